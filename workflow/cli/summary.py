@@ -65,7 +65,7 @@ def _reduction(results: Mapping[str, Any]) -> str:
     flat body there is no difference.
     """
     reduction = str(results["reduction"])
-    if results.get("scene", {}).get("bodies", {}).get("profile", {}).get("kind") == "flat":
+    if results["scene"]["bodies"]["profile"]["kind"] == "flat":
         return f"{reduction}: the same for a flat body"
     if reduction == "mdr":
         return "mdr: radii and pressures are those of the body"

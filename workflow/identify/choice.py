@@ -54,30 +54,23 @@ class MaterialRun(Choice):
     run: Run
 
 
-def theories_of(contact: AskedContact) -> Theories | None:
-    """Return JKR, DMT and Maugis–Dugdale for an adhesive sphere under its load, in SI.
-
-    None for any other body, or without a work of adhesion. A range that is not given is 0.3 nm.
-    """
-    if contact.radius is None or not contact.work_of_adhesion:
-        return None
-    sphere = MaugisDugdale(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range)
-    return Theories(sphere, contact.load)
-
-
 def choose(contact: AskedContact) -> Choice:
     """Return the scene that represents a contact, one chain on a rigid plane or two chains, and how it was chosen.
 
     On the plane, the experiment is a pull-off with the load as preload (0.7 of JKR's pull-off force without one), or
-    without attraction the load. Two chains are chosen only by model = "particles".
+    without attraction the load. Two chains are chosen only by model = "particles". An adhesive sphere has its theories
+    under its load, in SI; a range that is not given is 0.3 nm.
 
     Raises:
         IdentifyError: no chain can represent it; the message says why.
         SceneError: the profile is invalid.
         SettingsError: the bodies do not touch, or the tolerance needs too many particles.
     """
-    theories = theories_of(contact)
-    doubts = {} if theories is None else limitations(contact, theories)
+    theories, doubts = None, dict[str, str]()
+    if contact.radius is not None and contact.work_of_adhesion:
+        sphere = MaugisDugdale(contact.radius, contact.contact_modulus, contact.work_of_adhesion, contact.range)
+        theories = Theories(sphere, contact.load)
+        doubts = limitations(contact, theories)
     if contact.is_of_particles:
         return _particles(contact, theories, doubts)
     experiment: dict[str, Any] = {"kind": "load", "force": contact.load}

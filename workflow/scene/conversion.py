@@ -32,7 +32,14 @@ def convert(scene: Place) -> bool:
     reported; their keys, and those whose numbers are then unknown, are marked as wrong and keep their texts.
     """
     texts = [place for place in numbers_in(scene) if place.is_text and place.sound]
-    read = {place: value for place in texts if (value := _si_value(place)) is not None}
+    read = {}
+    for place in texts:
+        try:
+            value, dimension = si_value(place.value, *place.unit.texts)
+        except UnitTextError as error:
+            place.fault(str(error))
+        else:
+            read[place] = value * BOLTZMANN if dimension == "K" else value  # a temperature as k_B T [J]
     for place, value in read.items():
         if not place.unit.bases:  # these give the sizes of LU, FU and MU
             _put_number(place, value)
@@ -44,19 +51,6 @@ def convert(scene: Place) -> bool:
         elif place in read:
             _put_number(place, read[place] / size(place.unit.name, scales))
     return bool(texts)
-
-
-def _si_value(place: Place) -> Fraction | None:
-    """Return the exact quantity of a text in the unit of SI of its key; a temperature in K or °C as k_B T [J].
-
-    None where the text is no quantity of an allowed dimension, which is reported; the key is then marked as wrong.
-    """
-    try:
-        value, dimension = si_value(place.value, *place.unit.texts)
-    except UnitTextError as error:
-        place.fault(str(error))
-        return None
-    return value * BOLTZMANN if dimension == "K" else value
 
 
 def _put_number(place: Place, value: Fraction) -> None:

@@ -276,7 +276,7 @@ class Hold(Kind):
 
     def places(self) -> list[float]:
         """Return the one displacement [LU] that is held, compression positive; empty where a force is held."""
-        return [] if self.displacement is None else [self.displacement]
+        return _for_each(self.displacement, 1)
 
 
 class Moment(Table):
