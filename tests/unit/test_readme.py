@@ -17,6 +17,7 @@ from typer.testing import CliRunner
 
 from contact1d import from_material, read_scene, sweep
 from contact1d.__main__ import app
+from contact1d.workflow.fit.plan import read_fit
 from tests.pages import require_shown
 from tests.sweeps import Lost
 
@@ -74,7 +75,7 @@ def invoked(command: str) -> str:
     return done.stdout
 
 
-def test_every_scene_contact_and_sweep_is_one(tmp_path: Path) -> None:
+def test_every_scene_contact_sweep_and_fit_is_one(tmp_path: Path) -> None:
     """A contact that ships is tried by its command below; two scenes ship, too."""
     shipped = [tomllib.loads(path.read_text("utf-8")) for path in (ROOT / "lammps_inputs").glob("*/*.toml")]
     shown = [tomllib.loads(text) for text in scenes()]
@@ -82,6 +83,8 @@ def test_every_scene_contact_and_sweep_is_one(tmp_path: Path) -> None:
         if "axes" in tables:
             tables["scene"] = str(ROOT / "lammps_inputs" / "sweeps" / tables["scene"])
             assert sum(sweep(tables, tmp_path / tables["title"], Lost(), figures=False).counts.values()) > 1
+        elif "data" in tables:
+            assert read_fit(tables).fit.title == tables["title"]
         elif "bodies" in tables:
             assert read_scene(tables).title == tables["title"]
         else:
