@@ -168,7 +168,15 @@ def test_a_file_is_looked_for_beside_the_scene_and_needed_once(
 
 @pytest.mark.parametrize(
     "names",
-    ["r [µm], z [nm]", "z (nm); r (µm)", "r/µm\tz / nm", "r_um,z_nm", "Radius in µm,Height in nm", "r,z\nµm,nm"],
+    [
+        "r [µm], z [nm]",
+        "z (nm); r (µm)",
+        "r/µm\tz / nm",
+        "r_um,z_nm",
+        "R_(microns),height in nm",
+        "Radius in µm,Height in nm",
+        "r,z\nµm,nm",
+    ],
 )
 def test_units_in_the_names_are_those_of_the_numbers(names: str, file: Path) -> None:
     order = -1 if names.startswith("z") else 1

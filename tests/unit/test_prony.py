@@ -34,6 +34,7 @@ CLOSE, NOISY = 0.01, 0.02
     "text",
     [
         "share,time [ms]\n0.3 ± 0.02,1500 ± 100\n0.2,10000\n",
+        "i;g_i;tau_i (s)\n1;0.3 ± 0.02;1.5 ± 0.1\n2;0.2;10\n",
         "Messung 7\nTime (s);share;share_uncertainty;time uncertainty/ms\n1,5;0,3;0,02;100\n10;0,2;;\n",
     ],
 )
@@ -49,6 +50,7 @@ def test_a_series_in_a_file_is_that_of_a_list(text: str, tmp_path: Path) -> None
     [
         ("share,time [s]\n\n1.5,2\n", "share (t.csv, line 3) = 1.5: must be greater than 0 and at most 1"),
         ("share,time [s]\n0.6,1\n0.7,2\n", '"t.csv": the shares of the instantaneous modulus must add up to 1'),
+        ("t [s],E [MPa]\n1,2\n", '"t.csv": has moduli and no shares: contact1d terms t.csv --out terms.csv'),
         ("a,b\n0.3,1\n", 'terms.file = "t.csv": has no lines below headings that are known: share and time [s]'),
     ],
 )

@@ -14,9 +14,9 @@ from contact1d.workflow.scene.si_text import NUMBER
 
 NAMES = by_heading(
     {
-        "share": "share",
+        "share": "share, g, g_i, gi",
         "share ±": "share_uncertainty, share uncertainty",
-        "time": "time, t, relaxation time, relaxation_time, zeit, temps",
+        "time": "time, t, tau, tau_i, taui, τ, τ_i, τi, relaxation time, relaxation_time, zeit, temps",
         "time ±": "time_uncertainty, time uncertainty",
         "f": "f, freq, frequency, frequenz, fréquence",
         "ω": "ω, omega, angular frequency, angular_frequency, kreisfrequenz",
@@ -75,7 +75,10 @@ def put_terms(scene: Place, folder: Path) -> dict[str, str]:
     if not file or not file.above or not isinstance(file.value, str):
         return paths
     try:
-        for i, (line, cells) in enumerate(lines_in(read_text(folder / file.value, fallback="latin-1"))):
+        lines = lines_in(read_text(folder / file.value, fallback="latin-1"))
+        if not lines[0][1]["share"]:
+            raise ProfileFileError(f"has moduli and no shares: contact1d terms {file.value} --out terms.csv fits them")
+        for i, (line, cells) in enumerate(lines):
             texts = {key: f"{cells[key]} ± {cells[f'{key} ±']}".rstrip(" ±") for key in ("share", "time")}
             numbers.append({key: float(text) if NUMBER.fullmatch(text) else text for key, text in texts.items()})
             paths |= {f"{KEY}[{i}].{key}": f"{KEY}[{i}].{key} ({file.value}, line {line})" for key in texts}

@@ -27,8 +27,8 @@ COLUMNS = {
     "z": "z, h, height, heights, höhe, hoehe, hauteur, altezza, altura",
 }
 """Headings of each column in lower case, without units: x, from one side to the other, is read if there is no r."""
-NAME = re.compile(r"([^\W_]+)(?:\s*[\[(/_]\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
-"""Name and unit of a column: r, r [µm], r (µm), r/µm, r_um, r in µm."""
+NAME = re.compile(r"([^\W_]+)(?:\s*(?:_?[\[(/]|_)\s*|\sin\s+|\s*$)([^])]*)[])]?$", re.IGNORECASE)
+"""Name and unit of a column: r, r [µm], r (µm), r_(µm), r/µm, r_um, r in µm."""
 MODEL = "LU"
 COMMA = re.compile(r"^([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)$")
 """A number with a decimal comma."""
