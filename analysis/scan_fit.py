@@ -280,12 +280,15 @@ class _Fit:
     def noise_of(self, solved: _Solved) -> Noise:
         """Return the noise, over the width, by the difference of both sides; for one side by the residual.
 
-        The difference does not depend on the shape; what parameters have taken of the noise is added.
+        The difference does not depend on the shape; what parameters have taken of the noise is added. A point on the
+        right has its partner nearest to its mirror image: between points interpolated noise would be smaller.
         """
+        from scipy.interpolate import interp1d
+
         x, residual, count = self.x - solved.centre, solved.residual, solved.count
         if is_two_sided(x):
             right = x > 0.0
-            left = np.interp(x[right], -x[::-1], residual[::-1], right=math.nan)
+            left = interp1d(-x[::-1], residual[::-1], kind="nearest", bounds_error=False)(x[right])
             residual, count = (residual[right] - left) / math.sqrt(2.0), self.moves + self.tilts
             residual = residual[np.isfinite(residual)]
         noise = noise_in(residual)
@@ -333,6 +336,7 @@ class _Fit:
         theta, (offset, centre, tilt) = parameters[:count], parameters[count:].tolist()
         heights = self.z - offset - tilt * x
         touching = heights < heights.min() + ASPERITY * noise.deviation
+        covariance = autocovariance(solved.residual)
         grid = np.linspace(0.0, reach, 200)  # radii whose heights decide which deviations count
         if solved.curves and form.knots is not None:
             deviations = solved.curves.deviations(smooth(form.knots, False).gradient(grid, theta))
@@ -360,7 +364,7 @@ class _Fit:
             x=size * x,
             heights=size * heights,
             residual=size * solved.residual,
-            autocorrelation=autocovariance(solved.residual)[: points // 4] / max(noise.deviation**2, 1e-300),
+            autocorrelation=covariance[: points // 4] / max(float(covariance[0]), 1e-300),
             patches=int(np.count_nonzero(np.diff(np.append(0, touching.astype(int))) > 0)),
             missed=size * missed,
         )
