@@ -22,15 +22,17 @@ def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
 
     Columns are "input" (dotted keys), "half_width", and one of the name of each main result. Half-width and changes are
     relative to the values, dimensionless; a change is the larger one of both directions, ≥ 0. {} for a scene without
-    uncertain inputs. The deviation of a measured profile has no half-width (NaN), and a result of size 0 no relative
-    change (NaN).
+    uncertain inputs. A measured profile is one input, whose deviations add in squares and have no half-width (NaN); a
+    result of size 0 has no relative change (NaN).
     """
-    keys = list(dict.fromkeys(move.key for move in outcome.moves))
+    inputs = [move.key.partition(":")[0] for move in outcome.moves]
+    keys = list(dict.fromkeys(inputs))
     if not keys:
         return {}
     table: dict[str, Any] = {"input": keys, "half_width": [scene.shares.get(key, np.nan) for key in keys]}
     for name, result in main_results(scene, outcome.results).items():
-        changes = [in_squares([move for move in outcome.moves if move.key == key], name) for key in keys]
+        pairs = list(zip(inputs, outcome.moves, strict=True))
+        changes = [in_squares([move for own, move in pairs if own == key], name) for key in keys]
         table[name] = [change / result.size if result.size else np.nan for change in changes]
     return table
 
