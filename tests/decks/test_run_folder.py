@@ -18,7 +18,7 @@ import pytest
 from numpy.typing import NDArray
 from typer.testing import CliRunner
 
-from contact1d import Run, load_run, run
+from contact1d import Run, load_run, run, write_deck
 from contact1d.__main__ import app
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import read_states
@@ -28,14 +28,12 @@ from tests.scenes import chains
 Array = NDArray[np.float64]
 
 ROOT = Path(__file__).parents[2]
-READ = ("in.lammps", "system.data", "interaction.table", "adhesion.cells")
+READ = ("in.lammps", "system.data", "interaction.table", "neighbours.moves", "adhesion.cells")
 """What a deck may read; everything else in a folder is a result."""
 HARMLESS = (
     "force values in table DOUBLE_EXPONENTIAL are inconsistent with -dE/dr",  # the largest tension is an …
     "Should only be flagged at inflection points",  # … inflection point
     "No pairwise cutoff or binsize set. Atom sorting therefore disabled",  # nothing to sort on a rigid plane
-    "Compute force/tally only called from pair style",  # as it should be
-    "Stress was not tallied by pair style",  # the bodies are out of each other's reach
     "No fixes with time integration, atoms won't move",  # they are measured at rest
     "Attempting to displace atoms in rigid bodies",  # a search goes back; the body is set up anew in the next run, …
     "Changing velocities of atoms in rigid bodies",  # … as this says as well
@@ -134,6 +132,19 @@ def test_lmp_repeats_the_run_bitwise(make: Make, case: tuple[str, Any], tmp_path
     assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
     assert ("interaction.table" in names) == ("interaction" in SCENES[case[0]])
     assert json.loads((folder / "results.json").read_text()) == make(case).document
+
+
+def test_the_stiffness_of_neighbours_is_told_once(tmp_path: Path) -> None:
+    """With k_n changed in in.lammps alone a deck gives the forces of a scene with that k_n."""
+    scene = SCENES["path"] | {"title": "told once"}
+    decks = [write_deck(scene | {"neighbours": {"stiffness": k}}, tmp_path / str(k)) for k in (0.3, 0.5)]
+    (text, other), own = ((deck / "in.lammps").read_text() for deck in decks), "neighbours_bond_coefficient index "
+    (decks[0] / "in.lammps").write_text(text.replace(f"{own}0.15", f"{own}0.25"))
+    assert "tally" not in other
+    for deck in decks:
+        repeat(deck)
+    changed, forces = (curve(deck)[1] for deck in decks)
+    assert changed == pytest.approx(forces, rel=SUM, abs=SUM)
 
 
 PASSING = ("path", "slide", "pull_off", "tangential")

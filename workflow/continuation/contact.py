@@ -21,15 +21,15 @@ from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
 from contact1d.workflow.engine.session import EngineError, Session
 
-ATOM_UNITS = {"x": "LU", "f": "FU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
-"""Quantities that are measured of every atom, and their units."""
+ATOM_UNITS = {"x": "LU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
+"""Quantities that are measured of every atom, and their units; beside them is the force on it, `Contact.force_name`."""
 BATCH = 8
 """Load steps that go to LAMMPS at a time where they are known beforehand: waking two processes takes as long as one."""
 HEAT = ("heat_particles", "heat_plate")
 """Energy that the heat baths of particles and plate took in a load step [FU·LU]."""
 MOTION = {
     "f_cantilever_means[1]": "FU", "f_cantilever_means[2]": "FU·LU", "f_cantilever_means[3]": "FU·LU",
-    "c_measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
+    "measuring_energy": "FU·LU", "cantilever_kinetic": "FU·LU", "vcm(plate,x)": "LU/TU", "vcm(plate,z)": "LU/TU",
     "vcm(upper,x)": "LU/TU", "xcm(upper,x)": "LU",
 }  # fmt: skip
 """Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
@@ -219,11 +219,12 @@ class Contact:
             self._written = self._written or self.deck.keeps
             self._unfinished = self.deck.row_end(type(row))
         names = self._values()
-        readings = self.session.measure_rows(texts, tuple(names), tuple(ATOM_UNITS), meanwhile=self._compute_radii)
+        kinds = ATOM_UNITS | {self.force_name: "FU"}
+        readings = self.session.measure_rows(texts, tuple(names), tuple(kinds), meanwhile=self._compute_radii)
         units, phase, settings, states = self.deck.units, self._phases[-1].name, self.settings, list[State]()
         for number, (row, reading) in enumerate(zip(rows, readings, strict=True), first):
             numbers = {name: units.from_deck(v, names[name]) for name, v in zip(names, reading.values, strict=True)}
-            atoms = {n: units.from_deck(rows, ATOM_UNITS.get(n, "1")) for n, rows in reading.atoms.items()}
+            atoms = {n: units.from_deck(rows, kinds.get(n, "1")) for n, rows in reading.atoms.items()}
             state = self._state(phase, numbers, atoms, number)
             if self.scene.plate and self.scene.stands:
                 drag = settings.drag(getattr(row, "damping", None)) * state.plate_velocity
@@ -302,6 +303,11 @@ class Contact:
             with suppress(ValueError):  # reported where the radius is asked for
                 _ = state.radius
 
+    @property
+    def force_name(self) -> str:
+        """The LAMMPS name of the force on every atom: with an interaction that before springs were off to measure."""
+        return "f_measuring_residual" if self.scene.interaction else "f"
+
     def _values(self) -> dict[str, str]:
         """Return {LAMMPS name: unit of the model} of the numbers that are measured, besides those of atoms.
 
@@ -330,7 +336,7 @@ class Contact:
         Args:
             phase: its name.
             numbers: measured quantities by the names of `_values`, all of them, in LU, FU and TU.
-            atoms: arrays by the names of `ATOM_UNITS`, all of them, and "type", a row for each atom.
+            atoms: arrays by the names of `ATOM_UNITS` and `force_name`, and "type", a row for each atom.
             number: of the load step over all phases.
 
         Raises:
@@ -342,7 +348,7 @@ class Contact:
         if count < self.settings.chains.upper + opposite:
             # LAMMPS looks for lost atoms when it makes a new neighbour list, and a load step may end before.
             raise self._lost(f"atoms are missing: only {count} particles are left in the box", int(numbers["step"]))
-        position, force = atoms["x"], atoms["f"]
+        position, force = atoms["x"], atoms[self.force_name]
         x, z = position[upper, 0], position[upper, 2]
         if lower.any():
             x_low, z_low = self._surface(position[lower, 0], position[lower, 2])

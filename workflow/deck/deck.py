@@ -96,7 +96,7 @@ class Deck:
         styles = "".join(f"{slot:<16}{style}\n" for slot, style in slots.items() if style)
         blocks = [block("start", {}) + styles]
         for part in self.parts:
-            for index, name in enumerate(part.fragments):
+            for index, name in enumerate((*part.fragments, *part.springs)):
                 blocks.append(block(name, part.variables if index == 0 else {}))
         blocks += [block(name, {}) for name in self._output]
         self._check()
@@ -266,11 +266,15 @@ class Deck:
 
     @property
     def _measuring(self) -> tuple[str, ...]:
-        """The names of the fragments before a measurement, in order; () where rows are steps of one run (`stepped`)."""
+        """The names of the fragments of a measurement, in order; () where rows are steps of one run (`stepped`).
+
+        With an interaction springs are off in it, and set anew after it.
+        """
         if self.stepped:
             return ()
         measure = "steps/measuring_energy" if self.scene.cantilever else "steps/measuring"
-        return (*(name for part in self.parts for name in part.step_begin), measure)
+        begin = [name for part in self.parts for name in part.step_begin]
+        return (*begin, measure, *(name for part in self.parts for name in part.springs if self.scene.interaction))
 
     @property
     def _measured(self) -> tuple[str, ...]:
@@ -324,7 +328,7 @@ class Deck:
         for part in self.parts:
             for name in part.variables:
                 _define(owners, name, f"[{part.name}]")
-            for piece in map(fragment, part.fragments):
+            for piece in map(fragment, (*part.fragments, *part.springs)):
                 _add(owners, piece)
                 needed |= set(piece.needs)
         for name in self._output:

@@ -8,7 +8,7 @@ An anchor is the bulk's end of a particle's spring. Neighbour springs of zero re
 chain's ends inward and a curved chain straight. Their force on the undeformed chain, r_i = k_n Σ_j (p_j − p_i) over the
 neighbours j of i, is cancelled exactly by moving each anchor by −r_i/k, k the stiffness of the bulk spring: since that
 is linear and of zero rest length too, it is a constant force −r_i on particle i, and Σ r_i = 0 leaves the plate's force
-unchanged.
+unchanged. The deck moves the anchors, so that k_n and k stand in in.lammps alone.
 """
 
 from __future__ import annotations
@@ -33,6 +33,8 @@ class Body:
         name: "lower" or "upper".
         particles: undeformed positions at displacement 0, shape (N, 3).
         anchors: the bulk's ends of the bulk springs, shape (N, 3), or (0, 3) where particles are fixed in the body.
+        moves: −r_i/k_n of the anchors, shape (N, 3); 0 without springs between neighbours.
+        ratio: k_n/k, by which the deck multiplies these moves.
         far_anchors: the bulk's ends of long bonds, which make springs stiffer along x or z, shape (N, 3), or (0, 3).
     """
 
@@ -40,6 +42,14 @@ class Body:
     particles: Array
     anchors: Array
     far_anchors: Array
+    moves: Array
+    ratio: float = 0.0
+
+    @property
+    def corners(self) -> Array:
+        """The ends of all its atoms along each axis once the deck has moved its anchors, (2, 3) [LU]."""
+        atoms = np.concatenate([self.particles, self.anchors, self.anchors + self.ratio * self.moves, self.far_anchors])
+        return np.stack([atoms.min(axis=0), atoms.max(axis=0)])
 
 
 def particle_positions(count: int, spacing: float) -> Array:
@@ -47,17 +57,12 @@ def particle_positions(count: int, spacing: float) -> Array:
     return np.asarray((np.arange(count) - 0.5 * (count - 1)) * spacing, dtype=np.float64)
 
 
-def neighbour_forces(particles: Array, stiffness: float) -> Array:
-    """Return the forces r_i [FU], (N, 3), of zero-length neighbour springs on the chain `particles` (N, 3) [LU].
+def moves_of(particles: Array) -> Array:
+    """Return −r_i/k_n = −Σ_j (p_j − p_i) over the neighbours j of i of a chain of `particles`, (N, 3) [LU].
 
-    The chain is open: its two ends are no neighbours. The sum of the forces is 0. `stiffness`: k_n of the springs
-    [FU/LU].
+    The chain is open: its two ends are no neighbours. The sum of the moves is 0.
     """
-    pull = stiffness * np.diff(particles, axis=0)
-    force = np.zeros_like(particles)
-    force[:-1] += pull
-    force[1:] -= pull
-    return force
+    return np.diff(np.diff(particles, axis=0), axis=0, prepend=0.0, append=0.0) * -1.0
 
 
 def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
@@ -82,7 +87,7 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     below = particle_positions(settings.chains.lower, scene.bodies.spacing)
     lower = np.column_stack([below, 0.0 * below, 0.0 * below])
     if scene.bodies.lower == "rigid_chain":
-        return Body("lower", lower, *2 * (np.empty((0, 3)),)), _body("upper", upper, scene, settings)
+        return Body("lower", lower, *3 * (np.empty((0, 3)),)), _body("upper", upper, scene, settings)
     return _body("lower", lower, scene, settings), _body("upper", upper, scene, settings)
 
 
@@ -108,9 +113,9 @@ def start_offset(scene: Scene, settings: Settings) -> float:
 
 
 def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body:
-    """Return a body with anchors at its particles, moved against forces of neighbour springs on the undeformed chain.
+    """Return a body with anchors at its particles, and their moves against forces of neighbour springs.
 
-    The move is 0 in a periodic body, and along x without [horizontal]. No anchors, (0, 3), where particles are fixed in
+    These are 0 in a periodic body, and along x without [horizontal]. No anchors, (0, 3), where particles are fixed in
     the body. Far anchors are there only where particles may move along x and springs have another stiffness along x
     than along z: settings.chains.far [LU] from the particles, along −x where the tangential stiffness is the larger,
     else along z away from the other body. With a plate the upper atoms that move with it, anchors or fixed particles,
@@ -120,25 +125,23 @@ def _body(name: str, particles: Array, scene: Scene, settings: Settings) -> Body
     """
     none = np.empty((0, 3))
     if scene.stands:
-        return Body(name, particles + _staggered(particles, scene), none, none)
+        return Body(name, particles + _staggered(particles, scene), none, none, none)
     tangential = scene.tangential_stiffness
     softer = min(settings.forces.bulk_stiffness, tangential) if settings.chains.far else settings.forces.bulk_stiffness
-    shift = np.zeros_like(particles)
+    moves, ratio = np.zeros_like(particles), 0.0
     if scene.neighbours and not scene.bodies.periodic:
-        shift = -neighbour_forces(particles, scene.neighbours.stiffness) / softer
+        moves, ratio = moves_of(particles), scene.neighbours.stiffness / softer
         if not scene.horizontal:
-            shift[:, 0] = 0.0
-    if name == "upper":
-        shift += _staggered(particles, scene)
-    anchors = particles + shift
+            moves[:, 0] = 0.0
+    anchors = particles + _staggered(particles, scene) if name == "upper" else particles
     if settings.chains.far == 0.0:
-        return Body(name, particles, anchors, none)
+        return Body(name, particles, anchors, none, moves, ratio)
     away = np.zeros(3)
     if tangential > settings.forces.bulk_stiffness:
         away[0] = -settings.chains.far
     else:
         away[2] = settings.chains.far if name == "upper" else -settings.chains.far
-    return Body(name, particles, anchors, particles + away)
+    return Body(name, particles, anchors, particles + away, moves, ratio)
 
 
 def _staggered(particles: Array, scene: Scene) -> Array:

@@ -49,7 +49,13 @@ def free_to_move(scene: Scene, settings: Settings) -> list[Contribution]:
     softer = min(settings.forces.bulk_stiffness, scene.tangential_stiffness)
     coefficient = softer if settings.chains.far else settings.forces.bulk_stiffness
     parts = [
-        Contribution("bodies", Stage.BODIES, ("bodies",), {"bulk_bond_coefficient": number(coefficient / 2)}),
+        Contribution(
+            "bodies",
+            Stage.BODIES,
+            ("bodies",),
+            {"bulk_bond_coefficient": number(coefficient / 2)},
+            springs=("bulk_springs",),
+        ),
         Contribution("guide", Stage.GUIDE, ("guide",), {} if scene.horizontal else {"guide_x": "0.0"}),
         _method(scene, settings),
     ]
@@ -73,8 +79,8 @@ def bins(scene: Scene, settings: Settings, parts: Sequence[Contribution], most: 
         SettingsError: the box has too many bins for LAMMPS, even of the largest size.
     """
     chosen = [float(part.variables[name]) for part in parts for name in CHOSEN_BINS if name in part.variables]
-    atoms = [group for body in bodies(scene, settings) for group in (body.particles, body.anchors, body.far_anchors)]
-    edges = np.ptp(np.concatenate(atoms), axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
+    corners = [body.corners for body in bodies(scene, settings)]
+    edges = np.ptp(np.concatenate(corners), axis=0) + 2.0 * np.asarray(margins(scene, settings), dtype=np.float64)
     default = edge = max([*chosen, 0.5 * reach(scene, settings)])
 
     def exceed(bin_edge: float, limit: float) -> bool:

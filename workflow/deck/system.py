@@ -91,7 +91,8 @@ def assemble(scene: Scene, settings: Settings) -> System:
     if far or driver:
         masses += 2 * (1e-12 * anchor_mass,) + (anchor_mass,) * driver  # far anchors add nothing to the plate's inertia
     margin = margins(scene, settings)
-    box = np.stack([positions.min(axis=0) - margin, positions.max(axis=0) + margin])
+    corners = np.concatenate([positions, *(body.corners for body in parts)])
+    box = np.stack([corners.min(axis=0) - margin, corners.max(axis=0) + margin])
     if scene.bodies.periodic:
         half = 0.5 * period(scene, settings)
         box[:, 0] = -half, half
@@ -177,11 +178,16 @@ def _write_rows(file: TextIO, template: str, *columns: NDArray[np.float64] | Int
 def write_system(deck: Deck, folder: Path) -> None:
     """Write the input files of a deck to an existing folder, in deck units; each whole, in place of an earlier one.
 
-    These are system.data, with an interaction interaction.table, and the file of constants of each particle that a
-    contact law needs, such as adhesion.cells, where it has any.
+    These are system.data, with an interaction interaction.table, with springs between neighbours neighbours.moves, and
+    the file of constants of each particle that a contact law needs, such as adhesion.cells, where it has any.
     """
     scene, settings = deck.written
-    write_data(assemble(scene, settings), scene.title, folder / "system.data")
+    system = assemble(scene, settings)
+    write_data(system, scene.title, folder / "system.data")
+    if scene.neighbours:
+        moves = np.concatenate([body.moves for body in bodies(scene, settings)])
+        anchors = 1 + np.flatnonzero(np.isin(system.types, [*ANCHORS.values()]))
+        _write_columns({"x": moves[:, 0], "z": moves[:, 2]}, folder / "neighbours.moves", anchors)
     if settings.forces.table:
         write_table(settings.forces.table, settings.forces.table_from, folder / "interaction.table")
     x, unit = bodies(deck.scene, deck.settings)[0].particles[:, 0], deck.units.to_deck(1.0, "LU")
@@ -190,14 +196,17 @@ def write_system(deck: Deck, folder: Path) -> None:
         _write_columns({name: unit**power * column for name, (power, column) in columns.items()}, folder / law.file)
 
 
-def _write_columns(columns: Mapping[str, NDArray[np.float64]], path: Path) -> None:
-    """Write numbers of each particle, (n,) by name, for `variable atomfile`, the columns below each other.
+def _write_columns(
+    columns: Mapping[str, NDArray[np.float64]], path: Path, atoms: Sequence[int] | Integers | None = None
+) -> None:
+    """Write numbers of atoms, (n,) by name, for `variable atomfile`, the columns below each other.
 
-    Each is a block: a comment with its name, the number n, and n lines of atom number, from 1 on, and value, which
-    reads back to the same double. The file is written whole or not at all.
+    Each is a block: a comment with its name, the number n, and n lines of atom number and value, which reads back to
+    the same double. The file is written whole or not at all. `atoms`: their numbers, (n,); by default from 1 on.
     """
     blocks = []
     for name, column in columns.items():
-        rows = "".join(f"{i} {number(value)}\n" for i, value in enumerate(column, 1))
+        numbers = range(1, 1 + len(column)) if atoms is None else atoms
+        rows = "".join(f"{i} {number(value)}\n" for i, value in zip(numbers, column, strict=True))
         blocks.append(f"# {name}\n{len(column)}\n{rows}")
     write_whole(path, "\n".join(blocks))

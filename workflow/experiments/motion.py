@@ -300,7 +300,7 @@ def motion_of(scene: Scene, settings: Settings, load: float, states: Sequence[St
     driven, moved, carried = _summed(velocity * span), plate - plate[0], _read(states, "xcm(upper,x)")
     momentum = settings.chains.upper * bodies.mass * _read(states, "vcm(upper,x)") + mass * plate_velocity
     dragged = drag * (driven - carried) + c * (driven - moved) - momentum
-    energy = _read(states, "c_measuring_energy")
+    energy = _read(states, "measuring_energy")
     energy = energy + bodies.mass / inertia_of_particle * _read(states, "cantilever_kinetic") + 0.5 * mass * speeds
     energy += 0.5 * pull**2 / scene.the(Cantilever).stiffness - load * depth
     energies = {

@@ -50,8 +50,8 @@ FORMATS = ("png", "svg", "pdf")
 FILES = (
     RESULTS, "curve.csv", "profile.csv", "pressure_3d.csv", "shear_3d.csv", "friction.csv", "slips.csv",
     "detachments.csv", "cycles.csv", "means.csv", "samples.csv", "inputs.csv", "scene.toml",
-    "system.data", "interaction.table", "adhesion.cells", "retardation.cells", "in.lammps", "log.lammps",
-    "curve.txt", "rows.bin", "states.lammpstrj",
+    "system.data", "interaction.table", "neighbours.moves", "adhesion.cells", "retardation.cells", "in.lammps",
+    "log.lammps", "curve.txt", "rows.bin", "states.lammpstrj",
     "states.npz", "way.gif", "way.mp4", "view_in_ovito.py", "way.ovito", "way.png",
     *(f"{name}.{form}" for name in FIGURES for form in FORMATS),
 )  # fmt: skip

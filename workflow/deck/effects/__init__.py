@@ -43,6 +43,7 @@ class Contribution:
         variables: LAMMPS variables that the fragments need, name to value.
         pair_style: its part of the shared slot `pair_style`, or "".
         atom_style: its part of the shared slot `atom_style`, where atoms have more than bonds, or "".
+        springs: names of the fragments of its springs, behind `fragments`; and in every measurement without springs.
         step_begin, step_end: names of fragments before and after every measurement.
         integrates: the atom group whose motion its fragment integrates, or "": a group has one integrator at most.
         pushes: the LAMMPS variable of a force [FU] other than contact and load that presses the upper body onto the
@@ -55,6 +56,7 @@ class Contribution:
     variables: dict[str, str] = field(default_factory=dict)
     pair_style: str = ""
     atom_style: str = ""
+    springs: tuple[str, ...] = ()
     step_begin: tuple[str, ...] = ()
     step_end: tuple[str, ...] = ()
     integrates: str = ""

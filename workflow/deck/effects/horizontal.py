@@ -26,4 +26,4 @@ def horizontal(scene: Scene, settings: Settings) -> Contribution:
         "far_length": number(settings.chains.far),
         "far_bin": number(min(longest_bin, narrow / LEAST_SLENDERNESS)),
     }
-    return Contribution("horizontal", Stage.SPRINGS, ("horizontal", "far"), variables)
+    return Contribution("horizontal", Stage.SPRINGS, ("horizontal", "far"), variables, springs=("far_springs",))

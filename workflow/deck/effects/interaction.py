@@ -9,7 +9,7 @@ def interaction(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the pair forces between opposite particles.
 
     It has the `pair_style` table, and as variable the skin of the neighbour lists, in the units of the arguments.
-    Fragments around each measurement add up the forces on each particle.
+    In a measurement springs are off.
 
     Raises:
         AssertionError: the settings have no table.
@@ -21,6 +21,5 @@ def interaction(scene: Scene, settings: Settings) -> Contribution:
         ("interaction",),
         {"interaction_skin": number(skin(scene))},
         pair_style=f"table spline {settings.forces.table.points}",
-        step_begin=("steps/measuring_opposite",),
-        step_end=("steps/measured_opposite",),
+        step_begin=("steps/without_springs",),
     )

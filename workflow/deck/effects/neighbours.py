@@ -8,8 +8,14 @@ from contact1d.workflow.scene import Neighbours, Scene
 def neighbours(scene: Scene, settings: Settings) -> Contribution:
     """Return the deck part (fragments, variables) of the springs between neighbours of a body.
 
-    Its coefficient is half their stiffness, in the units of the arguments. System.data has their bonds, and anchors
-    that are shifted against their forces.
+    Its coefficient is half their stiffness, in the units of the arguments. System.data has their bonds, and
+    neighbours.moves the moves of anchors against their forces.
     """
     coefficient = number(scene.the(Neighbours).stiffness / 2)
-    return Contribution("neighbours", Stage.SPRINGS, ("neighbours",), {"neighbours_bond_coefficient": coefficient})
+    return Contribution(
+        "neighbours",
+        Stage.SPRINGS,
+        ("neighbours",),
+        {"neighbours_bond_coefficient": coefficient},
+        springs=("neighbour_springs",),
+    )
