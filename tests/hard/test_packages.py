@@ -4,10 +4,10 @@ Run with `make test ARGS='-m package'`.
 """
 
 import json
+import re
 import shutil
 import subprocess
 import sys
-import sysconfig
 import tarfile
 import venv
 import zipfile
@@ -18,11 +18,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("analysis", "lammps_inputs", "potentials", "workflow")
 CHECKOUT = ("pyproject.toml", "hatch_build.py", "README.md", "LICENSE", ".gitignore")
-BESIDE = (
-    "tests", "validation", "docs", "CHANGELOG.md", "CONTRIBUTING.md", "VALIDATION.md", "CITATION.cff", "mkdocs.yml",
-    "Makefile", "requirements.lock",
-)  # fmt: skip
-"""What the source distribution has besides."""
+LINKS = {f"src/contact1d/{name}" for name in FOLDERS}
 UNUSED = ("__pycache__", "*.pyc")
 
 pytestmark = pytest.mark.package
@@ -86,34 +82,37 @@ def test_both_hold_every_file_of_the_installed_folders_and_no_other(built: dict[
     source = {*checked_in(*FOLDERS), *package}
     installed = {"contact1d/" + name.removeprefix("src/contact1d/") for name in source}
     assert {name for name in files_of(built["wheel"]) if ".dist-info/" not in name} == installed
-    assert files_of(built["sdist"]) == source | {*checked_in(*BESIDE), *CHECKOUT, "PKG-INFO"}
+    assert files_of(built["sdist"]) == {*checked_in(), "PKG-INFO"} - LINKS
 
 
-@pytest.mark.parametrize("kind", ["wheel", "sdist"])
-def test_installed_elsewhere_it_runs_a_scene_from_another_folder(
-    kind: str, built: dict[str, Path], tmp_path: Path
+def test_a_wheel_of_the_source_distribution_is_that_of_the_checkout(built: dict[str, Path], tmp_path: Path) -> None:
+    made = pip("wheel", "--no-deps", "--no-index", "--no-build-isolation", "-w", tmp_path, built["sdist"])
+    assert made.returncode == 0, made.stderr
+    assert next(tmp_path.glob("*.whl")).read_bytes() == built["wheel"].read_bytes()
+
+
+def test_pip_installs_the_wheel_with_all_it_needs_and_it_runs_a_scene_in_another_folder(
+    built: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    home, elsewhere = tmp_path / "venv", tmp_path / "elsewhere"
+    """The fresh environment has the dependencies that the wheel names, in the versions of requirements.lock."""
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    home, elsewhere, locked = tmp_path / "venv", tmp_path / "elsewhere", tmp_path / "locked.txt"
     elsewhere.mkdir()
     venv.create(home, with_pip=False)
-    site = Path(sysconfig.get_path("purelib", "venv", {"base": str(home)}))
-    made = pip("wheel", "--no-deps", "--no-index", "--no-build-isolation", "-w", tmp_path, built[kind])
-    assert made.returncode == 0, made.stderr  # of a wheel: a copy
-    done = pip("--python", home, "install", "--no-deps", "--no-index", next(tmp_path.glob("*.whl")))
+    locked.write_text("\n".join(re.findall(r"^\S+==[^\\]+", (ROOT / "requirements.lock").read_text(), re.MULTILINE)))
+    done = pip("--python", home, "install", "-c", locked, built["wheel"])
     assert done.returncode == 0, done.stderr
-    # Its dependencies are those of this environment, whose own .pth file, the editable install, is not read from there.
-    (site / "dependencies.pth").write_text(sysconfig.get_path("purelib") + "\n")
-    scene = ROOT / "lammps_inputs" / "scenes" / "steel_on_glass.toml"
-    shutil.copy(scene, elsewhere / "scene.toml")
-    ran = subprocess.run(
-        [home / "bin" / "contact1d", "run", "scene.toml", "--out", "out"],
-        cwd=elsewhere, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert ran.returncode == 0, ran.stdout + ran.stderr
+    shutil.copy(ROOT / "lammps_inputs" / "scenes" / "steel_on_glass.toml", elsewhere / "scene.toml")
+    contact1d = home / "bin" / "contact1d"
+    for command in ([contact1d, "run", "scene.toml", "--out", "out"], [contact1d, "report", "out"]):
+        ran = subprocess.run(command, cwd=elsewhere, capture_output=True, text=True, check=False)
+        assert ran.returncode == 0, ran.stdout + ran.stderr
     assert json.loads((elsewhere / "out" / "results.json").read_text())["status"] == "done"
-    asked = [home / "bin" / "python", "-c", "import contact1d.analysis; print(contact1d.analysis.__file__)"]
+    asked = [home / "bin" / "python", "-c", "import contact1d; print(contact1d.__version__, contact1d.__file__)"]
     found = subprocess.run(asked, cwd=elsewhere, capture_output=True, text=True, check=True).stdout
-    assert Path(found.strip()).is_relative_to(site)
+    version, file = found.strip().split(" ", 1)
+    assert f"-{version}-" in built["wheel"].name
+    assert Path(file).is_relative_to(home)
 
 
 def test_an_editable_install_without_links_is_refused_in_one_sentence(checkout: Path, tmp_path: Path) -> None:
