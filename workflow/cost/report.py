@@ -186,12 +186,19 @@ def cost_figure(record: CostRecord) -> Figure:
     figure = new_figure((7.4, 5.2))
     axes = figure.subplots()
     groups: dict[str, list[tuple[float, float]]] = {}
+    labels: list[tuple[float, float, str]] = []
     for variant in record.rows:
         if variant.errors:
             setting, value = variant.change
             point = variant.cpu_s, variant.error.relative
             groups.setdefault(setting, []).append(point)
-            axes.annotate(f"  {'↓' * variant.error.is_bound}{value}", point, fontsize=7)
+            labels.append((*point, f"{'↓' * variant.error.is_bound}{value}"))
+    for place, (seconds, error, text) in enumerate(sorted(labels)):  # neighbours in time on both sides of their points
+        side = (-1.0) ** place
+        axes.annotate(
+            text, (seconds, error), (0.0, 6.0 * side), textcoords="offset points", fontsize=7, rotation=60.0 * side,
+            rotation_mode="anchor", va="center",
+        )  # fmt: skip
     baseline = record.baseline
     for setting, points in groups.items():
         marker = "o" if setting != baseline.change[0] else "o-"
@@ -199,6 +206,7 @@ def cost_figure(record: CostRecord) -> Figure:
     axes.plot(baseline.cpu_s, baseline.error.relative, "k*", markersize=13, label="scene as it is")
     axes.axhline(record.tolerance, color=THEORY, linewidth=0.8, linestyle=":", label="its tolerance")
     axes.loglog()
+    axes.margins(0.15)
     axes.legend(frameon=False)
     axes.set(xlabel="CPU time of a run (s)", ylabel="largest relative error (↓ less than)", title=record.title)
     return figure
