@@ -111,7 +111,8 @@ def drawn(chart: Chart) -> Data:
     ValueError for a chart of several panels.
     """
     (panel,) = chart.panels
-    heading = ": ".join(filter(None, [f"{panel.y.name} over {chart.x.name}", panel.heading]))
+    names = " over ".join(filter(None, [panel.y.name, chart.x.name]))
+    heading = ": ".join(filter(None, [names, panel.heading]))
     layout: Data = {}
     for key, axis in (("xaxis", chart.x), ("yaxis", panel.y)):
         layout[key] = {

@@ -46,23 +46,25 @@ def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [{name: value for name, value in row.items() if value == value} for row in rows]
 
 
-def chart(table: Mapping[str, Any]) -> Chart:
-    """Return the bar chart of the relative changes of results [%], grouped by the inputs of the table `inputs`.
+def chart(table: Mapping[str, Any], most_inputs: int = 12) -> Chart:
+    """Return the bar chart of the relative changes of results [%] with the inputs of the table `inputs`.
 
-    A change that is NaN has no bar.
+    The inputs are one below the other, the largest change at the top, at most `most_inputs`. A change that is NaN has
+    no bar.
     """
     names = [name for name in table if name not in INPUT_COLUMNS]
-    words = [key.partition(".")[2].replace("profile.", "") for key in table["input"]]
-    ticks = {float(i): text.replace(".", " ").replace("_", " ") for i, text in enumerate(words)}
+    changes = np.nan_to_num([table[name] for name in names])
+    order = np.argsort(-changes.max(axis=0, initial=0.0), kind="stable")[:most_inputs]
+    words = [table["input"][row].partition(".")[2].replace("profile.", "") for row in order]
+    ticks = {-float(i): text.replace(".", " ").replace("_", " ") for i, text in enumerate(words)}
     filled = 0.8  # share of the axis that bars cover
     series, width = [], filled / max(len(names), 1)
     for number, name in enumerate(names):
-        left = np.arange(len(ticks)) + width * number - 0.5 * filled
-        x = np.add.outer(left, [0.0, 0.0, width, width, np.nan]).ravel()
-        y = np.outer(table[name], [0.0, 100.0, 100.0, 0.0, np.nan]).ravel()
+        top = 0.5 * filled - np.arange(len(ticks)) - width * number
+        x = np.outer(changes[number, order], [0.0, 100.0, 100.0, 0.0, np.nan]).ravel()
+        y = np.subtract.outer(top, [0.0, 0.0, width, width, np.nan]).ravel()
         series.append(Series(x, y, name.replace("_", " "), COLOURS[number % len(COLOURS)], FILL))
-    panel = Panel(Axis("change over the input's uncertainty (%)", zero=True), series)
-    return Chart(Axis("input", ticks=ticks), [panel])
+    return Chart(Axis("change over the input's uncertainty (%)", zero=True), [Panel(Axis("", ticks=ticks), series)])
 
 
 def in_words(document: Mapping[str, Any]) -> list[str]:
