@@ -127,6 +127,7 @@ def test_a_page_replaces_a_page_and_nothing_else(finished: Run, tmp_path: Path) 
         assert refused.exit_code == 2
         assert f"{name} is no page of contact1d" in refused.stderr
     assert scene.read_text() == "title = 'mine'"
+    assert contact1d("report", finished.folder, "--out", tmp_path / "named").stdout.endswith("named.html\n")
 
 
 @pytest.mark.parametrize("name", ["hertz_plane", "mindlin"])

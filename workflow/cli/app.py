@@ -309,7 +309,7 @@ def report(
         list[Path],
         Argument(metavar="DIR…", help="Run folders, shown together, or one of a sweep or fit.", show_default=False),
     ],
-    out: Annotated[Path, Option(help="HTML file to write.")] = Path("report.html"),
+    out: Annotated[Path, Option(help="HTML file to write; .html is added.")] = Path("report.html"),
 ) -> None:
     """Write a page of runs, a sweep or a fit, with interactive figures; it needs no network and no other file.
 

@@ -16,6 +16,7 @@ from zipfile import BadZipFile
 
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 
+from contact1d.analysis.chart import Axis
 from contact1d.analysis.curve import read_states
 from contact1d.files import AnyPath, write_whole
 from contact1d.workflow.body.theory import in_words
@@ -31,8 +32,8 @@ from contact1d.workflow.runs.report import results_in
 from contact1d.workflow.scene import Scene, Table
 from contact1d.workflow.scene.quantities import keys_of
 from contact1d.workflow.sweep.figures import label_in, sweep_charts, title_of
-from contact1d.workflow.sweep.table import RECORD, counts_in, read_record, read_table, units_in
-from contact1d.workflow.units import NUMBER, SI, Quantity, Scales
+from contact1d.workflow.sweep.table import RECORD, columns_of, counts_in, read_record, read_table, units_in
+from contact1d.workflow.units import NUMBER, SI, Quantity, Scales, scale_of
 
 PACKAGE = files("contact1d.workflow.report")
 SIGNATURES = (
@@ -49,13 +50,15 @@ def report(folders: Sequence[AnyPath], out: AnyPath = "report.html") -> Path:
 
     Args:
         folders: folders of one or several runs, 24 at most, which are overlaid; or the folder of one sweep or one fit.
-        out: file to write; an earlier page is replaced.
+        out: file to write, with .html behind a name without it; an earlier page is replaced.
 
     Raises:
         FolderError: a folder holds neither a run nor a sweep nor a fit, there are too many, or a sweep or fit among
             others; a file in it can't be read; or the file is there and no page.
     """
     path = Path(out)
+    if path.suffix.lower() not in (".html", ".htm") and not path.exists():
+        path = path.with_name(f"{path.name}.html")  # a browser would show the text of another file
     if path.exists() and not (path.is_file() and any(signature in path.read_bytes() for signature in SIGNATURES)):
         raise FolderError(f"{path} is no page of contact1d: a page replaces an earlier page only; choose another file")
     paths = [Path(folder) for folder in folders]
@@ -139,17 +142,22 @@ def _of_sweep(folder: Path) -> str:
         FolderError: the folder holds no record of a sweep.
     """
     most_rows = 500  # results.csv has all
-    plan, units = read_record(folder), units_in(folder)
+    plan, units, rows = read_record(folder), units_in(folder), list(islice(read_table(folder), most_rows))
+    sizes = {name: max((abs(float(row[name])) for row in rows if row[name]), default=0.0) for name in units}
+    columns = {name: scale_of(sizes[name], unit) for name, unit in units.items()}
     drawn = {"": sweep_charts(folder, plan, units)}
 
     def number(row: Mapping[str, str], name: str) -> str:
-        """Return a result of a row as text with uncertainty and unit; "—" for an empty cell."""
-        return str(Quantity(float(row[name]), float(row[f"{name}_uncertainty"]), units[name])) if row[name] else "—"
+        """Return a result of a row as text with uncertainty, in the unit of its column; "—" for an empty cell."""
+        if not row[name]:
+            return "—"
+        value, uncertainty = (columns[name][0] * float(row[column]) for column in columns_of(name))
+        return str(Quantity(value, uncertainty, NUMBER))
 
     return _page(
-        "sweep.html", charts_of(drawn), None, plan=plan, units=units, folder=folder, number=number, label=label_in,
-        titles={axis.key: title_of(plan, axis) for axis in plan.axes},
-        rows=list(islice(read_table(folder), most_rows)), counts=counts_in(folder),
+        "sweep.html", charts_of(drawn), None, plan=plan, folder=folder, number=number, label=label_in, rows=rows,
+        titles={axis.key: title_of(plan, axis) for axis in plan.axes}, counts=counts_in(folder),
+        columns={name: Axis(name.replace("_", " "), unit).label for name, (_, unit) in columns.items()},
         base=json.dumps(plan.base, indent=2, ensure_ascii=False),
     )  # fmt: skip
 
@@ -212,8 +220,8 @@ def sentence(scene: Scene, scales: Scales) -> str:
     """
     bodies, experiment = scene.bodies, scene.experiment
     size, given = (
-        ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name != "kind")
-        for table in (bodies.profile, experiment)
+        ", ".join(f"{name} {value}" for name, value in _values(table, scales) if name not in left_out)
+        for table, left_out in ((bodies.profile, ("kind", "x", "z")), (experiment, ("kind",)))
     )
     lower = "a rigid plane" if bodies.lower == "rigid_plane" else "a lower body"
     effects = f" with {', '.join(scene.effects)}" if scene.effects else ""

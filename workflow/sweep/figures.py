@@ -56,7 +56,7 @@ def sweep_charts(folder: Path, plan: SweepPlan, units: Mapping[str, str]) -> dic
         values = points.value[points.form == ""]
         if np.ptp(values) > negligible_change * np.abs(values).max():
             y = chart.Axis(name.replace("_", " "), units[name], log=_spans(values))
-            charts[name] = Chart(x, [Panel(y, _lines(points), plan.title)])
+            charts[name] = Chart(x, [Panel(y, _lines(points))], plan.title)
     return charts
 
 
