@@ -64,7 +64,8 @@ def chart(table: Mapping[str, Any], most_inputs: int = 12) -> Chart:
         x = np.outer(changes[number, order], [0.0, 100.0, 100.0, 0.0, np.nan]).ravel()
         y = np.subtract.outer(top, [0.0, 0.0, width, width, np.nan]).ravel()
         series.append(Series(x, y, name.replace("_", " "), COLOURS[number % len(COLOURS)], FILL))
-    return Chart(Axis("change over the input's uncertainty (%)", zero=True), [Panel(Axis("", ticks=ticks), series)])
+    panel = Panel(Axis("", ticks=ticks), series, "each input varied over its uncertainty")
+    return Chart(Axis("change of the result (%)", zero=True), [panel])
 
 
 def in_words(document: Mapping[str, Any]) -> list[str]:
