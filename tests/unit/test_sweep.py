@@ -239,8 +239,10 @@ def test_the_table_has_numbers_in_one_unit_and_the_page_their_closed_forms(tmp_p
     assert (table.attrs["units"][RADIUS], table.attrs["units"]["contact_radius"]) == ("m", "m")
     hertz = (0.75 * table[FORCE] * table[RADIUS] / MODULUS) ** (1.0 / 3.0)
     assert table["contact_radius"].tolist() == pytest.approx(hertz.tolist(), rel=3e-3)  # 5 to 27 particles in it
-    charts = {chart["title"].partition(" over ")[0]: chart for chart in figures_on(page_of(tmp_path))["charts"]}
-    chart = charts["Displacement"]
+    page = page_of(tmp_path)
+    assert '<th scope="col">displacement (µm)</th>' in page.read_text(encoding="utf-8")
+    chart = next(chart for chart in figures_on(page)["charts"] if chart["title"].startswith("Displacement"))
+    assert ": table" not in chart["title"]
     names = [f"{RADIUS_IN_WORDS} = {text}" for text in ("1 mm", "3.1623 mm", "10 mm")]
     assert shown(chart) == ["Hertz", *names]
     assert chart["layout"]["xaxis"]["type"] == "linear"
