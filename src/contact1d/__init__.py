@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from contact1d.workflow.sweep.sweep import Sweep, sweep
     from contact1d.workflow.units import Quantity
 
+    __version__: str
+
 __all__ = [
     "Contact",
     "Contact1dError",
