@@ -50,9 +50,15 @@ lowest: $(READY) ## test what reads scenes and writes decks with the lowest vers
 	@OPENBLAS_NUM_THREADS=1 .lowest/bin/python -m pytest -q -n auto tests/unit/test_scene*.py tests/unit/test_fit.py \
 		tests/unit/test_quantities.py tests/unit/test_wrong_inputs.py tests/unit/test_states.py tests/decks
 
-docs: $(READY) ## build the site in site/
+docs: $(READY) ## build the site in site/, which then needs no network (needs npm)
+	@command -v npm >/dev/null || { echo "make docs needs npm, for the packages in docs/site/package.json; \
+	on Debian and Ubuntu: apt-get install npm" >&2; exit 1; }
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
-	@$(BIN)/python -m mkdocs build --strict --quiet
+	@mkdir -p .npm && cp docs/site/package.json docs/site/package-lock.json .npm/
+	@npm ci --prefix .npm --silent --no-audit --no-fund --ignore-scripts
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	@mkdir -p site/katex/fonts && cd .npm/node_modules/katex && cp LICENSE dist/katex.min.css dist/katex.min.js ../../../site/katex/ && \
+		cp dist/fonts/*.woff2 ../../../site/katex/fonts/
 
 mutants: $(READY) ## put random faults into the code and see whether the tests notice: ARGS='--number 100 --seed 1'
 	@OPENBLAS_NUM_THREADS=1 $(BIN)/python -m validation.tools.mutants $(ARGS)
@@ -64,7 +70,7 @@ validation: $(READY) ## the paper's statements anew, then VALIDATION.md and its 
 	@$(BIN)/python -m validation pages
 
 clean: ## remove .venv and the caches; runs/ stays
-	rm -rf $(VENV) .lowest dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	rm -rf $(VENV) .lowest .npm site dist .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
 	find workflow analysis potentials lammps_inputs validation tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
 $(LOCKED): requirements.lock
