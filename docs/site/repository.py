@@ -9,13 +9,15 @@ from mkdocs.structure.files import File, Files
 from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).parents[2]
+TOP = {"index.md": "README.md", "validation.md": "VALIDATION.md"}
+"""Pages that have nothing but a file at the top of the repository."""
 LINK = re.compile(r"(?<=\]\()[^)#:]+")
 
 
 def source(page: str) -> tuple[str, str]:
     """Return the text of a page and the folder of the repository to which its links are relative."""
-    if page == "validation.md":  # which has nothing but the file at the top
-        return (ROOT / "VALIDATION.md").read_text("utf-8"), ""
+    if page in TOP:
+        return (ROOT / TOP[page]).read_text("utf-8"), ""
     return (ROOT / "docs" / page).read_text("utf-8"), posixpath.join("docs", posixpath.dirname(page))
 
 
@@ -24,8 +26,11 @@ def linked(link: str, folder: str) -> tuple[Path | None, str]:
     path = posixpath.normpath(posixpath.join(folder, link))
     while (ROOT / path).is_dir():  # a folder is described by the file above it
         path = posixpath.join(posixpath.dirname(path), "README.md")
-    if path == "VALIDATION.md" or path.startswith("docs/") or not (ROOT / path).is_file():
-        return None, path.lower() if path == "VALIDATION.md" else path.removeprefix("docs/")
+    for page, top in TOP.items():
+        if path == top:
+            return None, page
+    if path.startswith("docs/") or not (ROOT / path).is_file():
+        return None, path.removeprefix("docs/")
     return ROOT / path, f"repository/{path}" + ".txt" * path.endswith(".md")
 
 
