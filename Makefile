@@ -50,14 +50,15 @@ lowest: $(READY) ## test what reads scenes and writes decks with the lowest vers
 	@OPENBLAS_NUM_THREADS=1 .lowest/bin/python -m pytest -q -n auto tests/unit/test_scene*.py tests/unit/test_fit.py \
 		tests/unit/test_quantities.py tests/unit/test_wrong_inputs.py tests/unit/test_states.py tests/decks
 
-docs: $(READY) ## build the site in site/, which then needs no network (needs npm)
-	@command -v npm >/dev/null || { echo "make docs needs npm, for the packages in docs/site/package.json; \
-	on Debian and Ubuntu: apt-get install npm" >&2; exit 1; }
+docs: $(READY) ## build the site in site/, which then needs no network (needs node and npm)
+	@command -v node >/dev/null && command -v npm >/dev/null || { echo "make docs needs node and npm, for the packages in docs/site/package.json; \
+	on Debian and Ubuntu: apt-get install nodejs npm" >&2; exit 1; }
 	@$(BIN)/python -m pip install -qq --disable-pip-version-check -e '.[docs]'
 	@mkdir -p .npm && cp docs/site/package.json docs/site/package-lock.json .npm/
 	@npm ci --prefix .npm --silent --no-audit --no-fund --ignore-scripts
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
-	@mkdir -p site/katex/fonts && cd .npm/node_modules/katex && cp LICENSE dist/katex.min.css dist/katex.min.js ../../../site/katex/ && \
+	@node docs/site/formulas.mjs site .npm
+	@mkdir -p site/katex/fonts && cd .npm/node_modules/katex && cp LICENSE dist/katex.min.css ../../../site/katex/ && \
 		cp dist/fonts/*.woff2 ../../../site/katex/fonts/
 
 mutants: $(READY) ## put random faults into the code and see whether the tests notice: ARGS='--number 100 --seed 1'
