@@ -196,7 +196,7 @@ def test_the_deck_repeats_the_run(made: Runs, one: Combination, tmp_path: Path) 
     done = finished(made(one)).done
     assert done is not None
     for path in done.folder.iterdir():
-        if path.name == "in.lammps" or path.suffix in (".data", ".table", ".cells"):
+        if path.name == "in.lammps" or path.suffix in (".data", ".table", ".cells", ".moves"):
             shutil.copy(path, tmp_path)
     with Engine.session(tmp_path) as session:
         session.run_file("in.lammps")

@@ -15,18 +15,18 @@ TABLES: dict[str, Any] = chains(
     100.0, bodies={"particles": 20}, neighbours={"stiffness": 0.3}, damping={"coefficient": "auto"}, plate={},
     noise={"temperature": 1e-4, "seed": 1}, experiment={"kind": "load", "force": 0.1},
 )  # fmt: skip
-SPRING = "neighbours_bond_coefficient"
+SKIN = "interaction_skin"
 
 
 @pytest.mark.parametrize(
     ("name", "changes", "told"),
     [
         ("noise", {"# Formula: ": "# "}, "fragment noise: the header has no line '# Formula: …'"),
-        ("neighbours", {f"# Needs: {SPRING}": "# Needs: -"}, f"fragment neighbours: uses {SPRING}"),
-        ("neighbours", {f"{SPRING}\n": f"{SPRING} spare\n"}, "fragment neighbours: its header needs spare"),
-        ("neighbours", {SPRING: "spare"}, "used but not defined: spare, in neighbours"),
-        ("neighbours", {f"# Needs: {SPRING}": "# Needs: -", f"${{{SPRING}}}": "1"}, f"defined but not used: {SPRING}"),
-        ("neighbours", {"# Defines: -\n": "# Defines: lower (group)\n"}, "defined twice: lower"),
+        ("interaction", {f"# Needs: {SKIN}": "# Needs: -"}, f"fragment interaction: uses {SKIN}"),
+        ("interaction", {f"{SKIN}\n": f"{SKIN} spare\n"}, "fragment interaction: its header needs spare"),
+        ("interaction", {SKIN: "spare"}, "used but not defined: spare, in interaction"),
+        ("interaction", {f"# Needs: {SKIN}": "# Needs: -", f"${{{SKIN}}}": "1"}, f"defined but not used: {SKIN}"),
+        ("neighbour_springs", {"# Defines: -\n": "# Defines: lower (group)\n"}, "defined twice: lower"),
         (
             "steps/load",
             {"# Needs: ": "# Needs: spare ", "${row_steps}": "$(v_row_steps+v_spare)"},

@@ -32,7 +32,7 @@ def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
     table: dict[str, Any] = {"input": keys, "half_width": [scene.shares.get(key, np.nan) for key in keys]}
     for name, result in main_results(scene, outcome.results).items():
         pairs = list(zip(inputs, outcome.moves, strict=True))
-        changes = [in_squares([move for own, move in pairs if own == key], name) for key in keys]
+        changes = [in_squares([move for name_of_input, move in pairs if name_of_input == key], name) for key in keys]
         table[name] = [change / result.size if result.size else np.nan for change in changes]
     return table
 
