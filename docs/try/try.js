@@ -10,7 +10,7 @@ const FORMS = {
   cone: { pressed: "Sneddon", jkr: "Maugis, Barquins" },
   punch: { pressed: "Sneddon", jkr: "Kendall" },
 };
-const decimal = (power) => Number((10 ** power).toPrecision(3));
+const decimal = (power) => Number((10 ** power).toPrecision(2));
 const exact = (value) => Number(value);
 /** Sliders by name: [label, lowest, highest, step, start, unit, value of a position]. */
 const SLIDERS = {
@@ -120,8 +120,7 @@ function arrived(run, { curve, states, seconds }) {
   const all = readStates(states); // one for each load step, of which the scene asked for some
   const result = { ...run, text: curve, curve: readCurve(curve), states: run.deck.kept.map((row) => all[row]), seconds };
   if (run.key) finished.set(run.key, result);
-  text("status", `LAMMPS: ${run.rows} load steps in ${seconds.toFixed(2)} s${root.dataset.first === undefined ? `, first result ${(root.dataset.first = (performance.now() - opened) / 1000).toFixed(1)} s after the page opened` : ""}.`);
-  element("progress").value = 1;
+  root.dataset.first ??= (performance.now() - opened) / 1000;
   rest();
   if (run.name === deckName() && !waiting) show(result);
 }
@@ -207,6 +206,8 @@ function show(result) {
   showNative(result);
   root.curve = result.text;
   root.dataset.drawn = (performance.now() - start) / 1000;
+  text("status", `LAMMPS: ${result.rows} load steps in ${result.seconds.toFixed(2)} s.`);
+  element("progress").value = 1;
   root.dataset.result = result.name;
   rest();
 }
@@ -312,7 +313,7 @@ function showChains(result) {
 function table(rows, form) {
   const cells = rows.map(([name, number, error, unit, exactly, isSi = true]) => {
     const [own, spread] = number === null ? ["", ""] : stated(number, error, unit, isSi);
-    const analytic = exactly === undefined || exactly === null ? "" : si(exactly, unit, 6);
+    const analytic = exactly === undefined || exactly === null ? "" : stated(exactly, error, unit, isSi)[0];
     return `<tr><th scope="row">${name}</th><td data-value="${number ?? ""}" data-error="${error}" data-exact="${exactly ?? ""}">${own}<br>${spread}</td>${form ? `<td>${analytic}</td>` : ""}</tr>`;
   });
   element("numbers").innerHTML = `<thead><tr><th scope="col">Result</th><th scope="col">LAMMPS in this browser</th>${form ? `<th scope="col">${form}</th>` : ""}</tr></thead><tbody>${cells.join("")}</tbody>`;
@@ -378,7 +379,7 @@ function python(body, law, force) {
   const [[key, size]] = Object.entries(profile);
   const shape = { ball: "sphere", cone: "cone", punch: "punch" }[body];
   const material = `upper={"youngs_modulus": "${modulus}", "poisson_ratio": ${poisson}}, lower="rigid"`;
-  return `import contact1d\ncontact = contact1d.${shape}(${key}="${size}", ${material}${work ? `, work_of_adhesion="${work}"` : ""})\nprint(contact.load("${load}"))`;
+  return `import contact1d\nrun = contact1d.${shape}(${key}="${size}", ${material}${work ? `, work_of_adhesion="${work}"` : ""}).load("${load}")\nprint(run)`;
 }
 
 function downloads(result, scene, script) {
