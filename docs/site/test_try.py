@@ -233,6 +233,22 @@ def test_two_chains_run_again_with_other_springs(page: Any, tmp_path: Path) -> N
     assert numbers(page)["Force F"][0] == pytest.approx(curve.force[0], abs=tolerance)
 
 
+def test_without_lammps_or_scripts_a_sentence_says_so(browser: Any, address: str) -> None:
+    """Where lammps.js cannot be loaded, and where scripts are off."""
+    page = browser.new_page()
+    page.route("**/lammps/lammps.js", lambda route: route.abort())
+    page.goto(address + "try/")
+    page.wait_for_selector("#trouble:not([hidden])")
+    page.wait_for_timeout(1000)
+    assert "could not be loaded" in page.inner_text("#trouble")
+    page.close()
+    context = browser.new_context(java_script_enabled=False)
+    page = context.new_page()
+    page.goto(address + "try/")
+    assert "needs JavaScript" in page.inner_text("#try")
+    context.close()
+
+
 @pytest.mark.parametrize("missing", ["WebAssembly", "Worker"])
 def test_without_webassembly_or_workers_a_sentence_says_so(browser: Any, address: str, missing: str) -> None:
     """Which the page cannot do without."""

@@ -37,7 +37,7 @@ function choiceHtml(name, values) {
   return `<div class="choices">${values.map(one).join("")}</div>`;
 }
 
-root.insertAdjacentHTML("beforeend", `
+root.innerHTML = `
   <p class="warning" id="trouble" role="alert" hidden></p>
   <fieldset><legend>Body</legend>${choiceHtml("body", ["ball", "cone", "punch"])}</fieldset>
   <fieldset><legend>Contact law</legend>${choiceHtml("law", ["jkr", "pressed", "chains"])}</fieldset>
@@ -54,7 +54,7 @@ root.insertAdjacentHTML("beforeend", `
     <p>Download the deck (<code>lmp -in in.lammps</code> repeats this run), and the scene with the values of the sliders:</p>
     <p class="downloads" id="downloads"></p>
     <pre><code id="python"></code></pre>
-  </div>`);
+  </div>`;
 
 const element = (id) => document.getElementById(id);
 const chosen = (name) => root.querySelector(`input[name=${name}]:checked`).value;
@@ -81,6 +81,17 @@ function trouble(words) {
   element("trouble").hidden = !words;
 }
 
+function stopped(words) {
+  trouble(words);
+  text("status", "No result.");
+  element("progress").value = 0;
+}
+
+function unusable(words) {
+  worker = null;
+  stopped(words);
+}
+
 // --- Decks and runs -------------------------------------------------------------------------------------------------
 
 const decks = fetch("decks/decks.json").then((answer) => answer.json());
@@ -92,9 +103,9 @@ function startWorker() {
     throw Error("This browser has WebAssembly or workers switched off, and LAMMPS needs both to run here. Switch them on, or run the same scene with contact1d run.");
   }
   worker = new Worker("worker.js", { type: "module" });
-  worker.onerror = () => trouble("LAMMPS could not be loaded in a worker of this browser. Use a current browser, with the site on a web server, or run the same scene with contact1d run.");
+  worker.onerror = () => unusable("LAMMPS could not be loaded in a worker of this browser. Use a current browser, with the site on a web server, or run the same scene with contact1d run.");
   worker.onmessage = ({ data }) => {
-    if (data.failed) { trouble(data.failed); text("status", "No result."); }
+    if (data.failed) (data.id === undefined ? unusable : stopped)(data.failed);
     if (data.ready && !current) text("status", "LAMMPS is ready.");
     if (data.id === undefined || data.id !== current?.id) return;
     if (data.relaxed) { element("progress").value = ++current.relaxed / current.rows; return; }
@@ -107,10 +118,10 @@ function startWorker() {
 
 /** Start a run, after the one that is active; one that still waits is dropped. */
 function send(run) {
+  if (!worker) return;
   if (current) { waiting = run; return; }
   waiting = null;
   current = { ...run, id: ++count, relaxed: 0 };
-  trouble("");
   text("status", `LAMMPS runs: ${run.title} …`);
   element("progress").removeAttribute("value");
   worker.postMessage({ id: current.id, files: run.files });
@@ -120,6 +131,7 @@ function arrived(run, { curve, states, seconds }) {
   const all = readStates(states); // one for each load step, of which the scene asked for some
   const result = { ...run, text: curve, curve: readCurve(curve), states: run.deck.kept.map((row) => all[row]), seconds };
   if (run.key) finished.set(run.key, result);
+  trouble("");
   root.dataset.first ??= (performance.now() - opened) / 1000;
   rest();
   if (run.name === deckName() && !waiting) show(result);
