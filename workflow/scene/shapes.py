@@ -261,15 +261,13 @@ def _half_angle(text: object) -> object:
     raise PydanticCustomError("scene", "{problem}", {"problem": problem})
 
 
-class Cone(Shape):
-    """Profile of the upper body: z = s |x|."""
+class Flanked(Shape):
+    """The base class of bodies with a conical flank, whose slope or half angle is given."""
 
     one_of = ((("slope", "half_angle"), 'give one of the two: slope = 0.1, or half_angle = "80°"'),)
 
-    kind: Literal["cone"]
-    """z = s |x|"""
     slope: Ratio | None = None
-    """slope s, the tangent of the angle between flank and plane"""
+    """slope s of the flank, the tangent of the angle between flank and plane"""
     half_angle: Annotated[str, BeforeValidator(_half_angle)] | None = None
     """half angle from the axis to the flank, such as "80°" or "1.4 rad", less than 90°, in place of the slope, which
     is its cotangent
@@ -279,6 +277,13 @@ class Cone(Shape):
     def rise(self) -> float:
         """The slope s of the flank, dimensionless: as given, else the cotangent of the half angle."""
         return self.slope or 1.0 / math.tan(si_value(self.half_angle or "", "rad")[0])
+
+
+class Cone(Flanked):
+    """Profile of the upper body: z = s |x|."""
+
+    kind: Literal["cone"]
+    """z = s |x|"""
 
     def height(self, x: Array) -> Array:
         """Return the height z = s |x| [LU] at positions x [LU]; same shape."""
