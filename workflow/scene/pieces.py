@@ -69,14 +69,15 @@ class Pieces(Shape):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] at which the slope jumps, rising: where two pieces meet with different slopes."""
-        before, jumps = (0.0, *self.pieces[0][1:]), []
-        for piece in self.pieces[1:]:
-            radius, p, q = piece
-            if not math.isclose(p + q * radius, before[1] + before[2] * radius, rel_tol=1e-9):
-                jumps.append(radius)
-            before = piece
-        return tuple(jumps)
+        """Radii [LU] at which two pieces meet, rising."""
+        return tuple(radius for radius, _, _ in self.pieces[1:])
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Radii [LU] at which two pieces meet with different slopes, rising."""
+        met = zip(self.pieces, self.pieces[1:], strict=False)
+        slopes = {r: (before + rise * r, after + more * r) for (_, before, rise), (r, after, more) in met}
+        return tuple(r for r, pair in slopes.items() if not math.isclose(*pair, abs_tol=1e-9 * sum(map(abs, pair))))
 
 
 class BluntCone(Pieces, Flanked):

@@ -82,12 +82,16 @@ class Shape(Table):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] off the axis, rising, at which the slope jumps.
+        """Radii [LU] off the axis, rising, at which the slope or the curvature jumps, where pieces of a body meet.
 
-        A pressure there has no bound, and g′ is not finite. Only measured profiles have them: empty for all others. An
-        edge of the body is not among them.
+        An edge of the body is not among them.
         """
         return ()
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """The kinks [LU] at which the slope jumps: a pressure there has no bound, and g′ is not finite."""
+        return self.kinks
 
     @property
     def alternatives(self) -> tuple[Shape, ...]:

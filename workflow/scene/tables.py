@@ -261,7 +261,7 @@ class Bodies(Table):
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Radii [LU] off the axis, rising, at which the slope of the profile jumps; empty of all but measured ones."""
+        """Radii [LU] off the axis, rising, at which the slope or the curvature of the profile jumps."""
         return self.profile.kinks
 
     @property
