@@ -56,7 +56,7 @@ class LoadedState:
 
     def has_kinks(self, shape: Shape) -> bool:
         """Return whether the slope of this shape jumps off the axis, nearer than the contact radius of the state."""
-        return any(kink < self.radius.value for kink in shape.corners)
+        return any(kink < self.radius.value for kink in shape.slope_jumps)
 
     @property
     def is_uncoupled(self) -> bool:

@@ -73,7 +73,7 @@ class Pieces(Shape):
         return tuple(radius for radius, _, _ in self.pieces[1:])
 
     @property
-    def corners(self) -> tuple[float, ...]:
+    def slope_jumps(self) -> tuple[float, ...]:
         """Radii [LU] at which two pieces meet with different slopes, rising."""
         met = zip(self.pieces, self.pieces[1:], strict=False)
         slopes = {r: (before + rise * r, after + more * r) for (_, before, rise), (r, after, more) in met}

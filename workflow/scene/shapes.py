@@ -89,7 +89,7 @@ class Shape(Table):
         return ()
 
     @property
-    def corners(self) -> tuple[float, ...]:
+    def slope_jumps(self) -> tuple[float, ...]:
         """The kinks [LU] at which the slope jumps: a pressure there has no bound, and g′ is not finite."""
         return self.kinks
 
