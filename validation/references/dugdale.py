@@ -176,7 +176,7 @@ class Cohesive:
     def critical(self) -> State:
         """The largest tension of the contacts that fixed grips hold, and of the zone that is left of them."""
         last = self.fold
-        within = [a for a in self._inside if last is None or a > last]
+        within = self._inside if last is None else [*(a for a in self._inside if a > last), last * (1.0 + CLOSE)]
         states = [self.state(a) for a in self._turns(True, within)]
         states.append(self.state(0.0 if last is None else last))
         return min(states, key=lambda one: one.force)

@@ -84,20 +84,27 @@ class Dugdale:
         Raises:
             SettingsError: even before contact the attraction exceeds the body.
         """
-        from scipy.optimize import elementwise
-
         if self.end == math.inf:
             return math.inf
+        edge = float(self.edges(np.asarray([self.end]))[0])
+        if math.isnan(edge):
+            raise covered(self.end)
+        return INSIDE * edge
 
-        def error(edge: Array) -> Array:
-            """Return the gap at c less the range, (m,) [LU], of contacts whose attraction ends with the body."""
-            width = np.sqrt((self.end - edge) * (self.end + edge))
+    def edges(self, reach: Array) -> Array:
+        """Return the contact radii a, (m,) [LU], in equilibrium, whose attraction ends at the radii c, (m,) [LU].
+
+        NaN where it ends beyond c even before contact.
+        """
+        from scipy.optimize import elementwise
+
+        def error(edge: Array, reach: Array) -> Array:
+            """Return the gap at c less the range, (m,) [LU]."""
+            width = np.sqrt((reach - edge) * (reach + edge))
             return self.gap_error(edge, width, self.smooth(edge, width))
 
-        if float(error(np.zeros(1))[0]) < 0.0:
-            raise covered(self.end)
-        root = elementwise.find_root(error, (np.zeros(1), np.full(1, self.end)), maxiter=DOUBLINGS)
-        return INSIDE * float(root.x[0])
+        root = elementwise.find_root(error, (np.zeros_like(reach), reach), args=(reach,), maxiter=DOUBLINGS)
+        return np.where(root.success, root.x, np.nan)
 
     @property
     def ratio(self) -> float:
@@ -112,7 +119,7 @@ class Dugdale:
         g is the transformed profile.
         """
         x = np.concatenate([[0.0], np.geomspace(1e-6 * self.known, self.known, 2000)])
-        x = beside_kinks(x, self.profile)
+        x = beside_kinks(x, self.profile.kinks)
         return x, np.append(0.0, np.cumsum(self._integral(x[:-1], x[1:])))
 
     def _integral(self, low: Array, high: Array, nodes: int = 8) -> Array:

@@ -232,7 +232,7 @@ class Jkr(Law):
         # The first position lies so many decades inside that the least h is far (30 times) outside of it.
         for level in (1, 2, 3, 4):
             inner = np.geomspace(1e-3**level * self.known, self.known, level * POINTS)
-            x = beside_kinks(np.append(0.0, inner), self.profile)
+            x = beside_kinks(np.append(0.0, inner), self.profile.kinks)
             least = int(np.argmin(self.opened(x)))
             if x[least] > 30.0 * inner[0]:
                 break

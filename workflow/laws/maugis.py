@@ -112,9 +112,15 @@ class Maugis(Zoned):
         """
         first = 1e-3 * self.known
         edge = np.concatenate([np.linspace(0.0, first, 40, endpoint=False), np.geomspace(first, self.known, 400)])
-        edge = beside_kinks(edge, self.profile)
+        edge = beside_kinks(edge, self._corners)
         edge = np.unique(np.concatenate([edge, self._folds(edge)]))
         return self.equations.equilibria(edge)
+
+    @cached_property
+    def _corners(self) -> tuple[float, ...]:
+        """Contact radii [LU], rising, at which the contact or its attraction ends at a kink of the body; cached."""
+        kinks = np.asarray(self.profile.kinks)
+        return tuple(sorted(edge for edge in (*kinks, *self.equations.edges(kinks)) if edge < self.known))
 
     def _folds(self, edge: Array) -> Array:
         """Return the contact radii, (k,) [LU], at which d has an extremum along a rising grid `edge` of them, (n,)
@@ -151,8 +157,7 @@ class Maugis(Zoned):
         untouched = np.zeros_like(reach)
         columns = [[untouched], [reach], [self.equations.before(reach)], [-math.pi * self.equations.stress * reach**2]]
         # Each stretch between kinks has its own cubics: beyond a kink d rises as a root.
-        kinks = np.searchsorted(nodes.edge, self.profile.kinks)
-        ends = [0, *(kink for kink in kinks if 0 < kink < nodes.edge.size - 1), nodes.edge.size - 1]
+        ends = [0, *np.searchsorted(nodes.edge, self._corners), nodes.edge.size - 1]
         for first, last in pairwise(ends):
             stretch, number = slice(first, last + 1), np.arange(last - first + 1.0)
             edge = np.interp(np.linspace(0.0, last - first, BETWEEN * (last - first) + 1), number, nodes.edge[stretch])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -105,25 +106,24 @@ def tabulated(profile: Profile, spacing: float, kind: type[Tabulated] = Tabulate
         spacing: of the particles [LU].
         kind: class of the table.
     """
-    x = beside_kinks(np.concatenate([[0.0], np.geomspace(0.01 * spacing, profile.reach, 1000)]), profile)
+    x = beside_kinks(np.concatenate([[0.0], np.geomspace(0.01 * spacing, profile.reach, 1000)]), profile.kinks)
     return kind(x, profile.height(x), profile.kinks)
 
 
-def beside_kinks(positions: Array, profile: Profile, points: int = 60, most_kinks: int = 100) -> Array:
-    """Return rising positions (n,) [LU]: the given ones, and more at and on both sides of a profile's kinks, without
-    repetition.
+def beside_kinks(positions: Array, kinks: Sequence[float], points: int = 60, most_kinks: int = 100) -> Array:
+    """Return rising positions (n,) [LU]: the given ones, and more at and on both sides of kinks, without repetition.
 
     At a kink g rises as a root. None is added beyond the last position.
 
     Args:
         positions: rising [LU].
-        profile: whose kinks they are.
+        kinks: positions of kinks [LU].
         points: number of positions on each side of a kink, from 1e-9 to a tenth of its position away, in geometric
             progression.
         most_kinks: number of kinks, the first ones, that get them.
     """
     end = float(positions[-1])
     distances = np.append(0.0, np.geomspace(ROUND_OFF, 0.1, points))
-    near = [kink * (1.0 + sign * distances) for kink in profile.kinks[:most_kinks] for sign in (1.0, -1.0)]
+    near = [kink * (1.0 + sign * distances) for kink in kinks[:most_kinks] for sign in (1.0, -1.0)]
     x = np.unique(np.concatenate([positions, *near]))
     return np.asarray(x[x <= end])
