@@ -253,6 +253,7 @@ def _stiffness(state: LoadedState, share: float) -> Quantity | None:
         x, q = np.append(state.x[right], edge), np.append(state.load[right], 0.0)
         rise, fall = np.diff(state.heights(x) / state.layer), -np.diff(q)
         slope = np.divide(fall, rise, out=np.zeros_like(fall), where=rise > 0.0)
+        slope[: np.argmax(rise > 0.0)] = slope[np.argmax(rise > 0.0)]  # on a plane end it is that beside it
         sides.append(
             float(2.0 * np.sum(slope * np.diff(x, prepend=0.0)[1:]) + 2.0 * slope[0] * x[0]) if fall.size else 0.0
         )

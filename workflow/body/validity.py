@@ -28,7 +28,7 @@ from contact1d.workflow.scene import Scene
 from contact1d.workflow.units import MEAN_PRESSURE, Quantity, Scales, prefixed
 
 RADII = ("contact_radius", "largest_radius", "zero_load_radius", "critical_radius", "peak_contact_radius")
-SINGULAR = ("cone", "flat_punch")
+SINGULAR = ("cone", "flat_punch", "truncated_cone", "truncated_parabola")
 """Profiles with a singular pressure."""
 PRESSURES = ("central_pressure", "peak_pressure")
 
@@ -126,11 +126,11 @@ def _difference_of_ball(case: Case, radius: float) -> str:
 def _half_width(case: Case, radius: float, limit: float = 0.5) -> Iterator[Check]:
     """Yield one check of a contact radius [LU] over the half-width of the body, dimensionless.
 
-    The half-width of an unbounded body is its radius of curvature. Nothing for an unbounded body without one, as a
+    The half-width of a paraboloid is its radius of curvature. Nothing for any other unbounded body, as a blunt
     cone, and for a body with an edge. The limit is a convention; the message is there also where the check holds.
     """
     profile = case.scene.bodies.profile
-    width = profile.reach if math.isfinite(profile.reach) else profile.curvature_radius  # of a paraboloid its ball's
+    width = profile.half_width
     if width is None or profile.has_edge:
         return
     share = radius / width

@@ -72,6 +72,11 @@ class Shape(Table):
         return math.inf
 
     @property
+    def half_width(self) -> float | None:
+        """Half-width [LU] of the body: its reach, of a paraboloid the radius of its ball, None where it is infinite."""
+        return self.reach if math.isfinite(self.reach) else None
+
+    @property
     def curvature_radius(self) -> float | None:
         """Radius of curvature R at the apex [LU], for two curved bodies 1/R = 1/R₁ + 1/R₂; None where there is none.
 
@@ -159,6 +164,11 @@ class Parabola(Shape):
     def curvature_radius(self) -> float:
         """The effective radius R [LU] of both bodies: R₁/(1 + R₁/R₂), on a plane R₁."""
         return self.radius / (1.0 + self.radius / (self.counter_radius or math.inf))
+
+    @property
+    def half_width(self) -> float:
+        """The effective radius R [LU] of both bodies, that of a ball near its apex."""
+        return self.curvature_radius
 
     @property
     def steepest(self) -> Self:
