@@ -52,6 +52,11 @@ PROFILES: dict[str, dict[str, Any]] = {
     "power": {"exponent": 3.0, "radius": length(20.0), "height": length(0.4)},
     "table": {"r": [length(r) for r in CURVE], "z": [length(r * r / 2.0 / RADIUS) for r in CURVE]},
     "flat": {},
+    "blunt_cone": {"slope": SLOPE, "tip_radius": length(300.0)},
+    "truncated_cone": {"slope": SLOPE, "land_radius": length(5.0)},
+    "truncated_parabola": {"radius": length(500.0), "land_radius": length(8.0)},
+    "rounded_punch": {"radius": length(5.0), "edge_radius": length(200.0)},
+    "hyperboloid": {"slope": SLOPE, "tip_radius": length(300.0)},
 }
 """By their kind; under LOAD on a plane the contact radius is 10 to 20 LU."""
 

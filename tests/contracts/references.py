@@ -39,16 +39,15 @@ from validation.references.relaxing import Indentation, KelvinVoigt, Legs, Mater
 Numbers = dict[str, float]
 MASS, SPEED, GUESS = 10.0, 0.3, 20.0
 SURFACES = {
-    kind: surface(GUESS, kind, **{name: getattr(number, "value", number) for name, number in PROFILES[kind].items()})
-    for kind in ("parabola", "circle", "ellipsoid", "cone", "power", "flat_punch")
+    kind: surface(GUESS, kind, **{name: getattr(number, "value", number) for name, number in numbers.items()})
+    for kind, numbers in PROFILES.items()
+    if kind not in ("table", "flat")
 }
 SURFACES["table"] = SURFACES["parabola"]
 BODIES: dict[str, Body] = {kind: one.body for kind, one in SURFACES.items()}
 """Slopes and bends, of each profile."""
 POWERS: dict[str, Power] = {
-    kind: one.power
-    for kind, one in SURFACES.items()
-    if kind not in ("circle", "ellipsoid") and isinstance(one.power, Power)
+    kind: power for kind in ("parabola", "cone", "power", "table") if isinstance(power := SURFACES[kind].power, Power)
 }
 """Those that are a power of r."""
 SHARES = tuple((one["share"], one["time"].value) for one in LAWS["prony"]["viscoelasticity"]["terms"])

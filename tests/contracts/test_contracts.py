@@ -46,6 +46,7 @@ KNOWN: dict[str, str] = {
         "± depends on the units: a threshold is not relative": ("units two_kinks-jkr-pull_off-quasistatic",),
         "± is 4 to 20 times the errors": (
             "cap power-friction-tangential_cycles-quasistatic",
+            "cap blunt_cone-friction-tangential_cycles-quasistatic",
             "cap circle-prony-history_of_a_force-quasistatic",
         ),
         "± is too small by 3 to 8 %": (

@@ -40,6 +40,27 @@ FORMULAS: dict[str, tuple[dict[str, Any], Function, Function, float, float | Non
         {"exponent": 1.5, "radius": 20.0, "height": 2.0}, lambda x: 2.0 * np.abs(x / 20.0) ** 1.5,
         lambda r: 3.0 * math.sqrt(r / 20.0) / 20.0, math.inf, None,
     ),
+    "hyperboloid": (
+        {"slope": 0.3, "tip_radius": 50.0}, lambda x: np.hypot(4.5, 0.3 * x) - 4.5,
+        lambda r: 0.3 * r / math.hypot(15.0, r), math.inf, 50.0,
+    ),
+    "blunt_cone": (
+        {"slope": 0.3, "tip_radius": 50.0},
+        lambda x: np.where(np.abs(x) < 15.0, x**2 / 100.0, 0.3 * np.abs(x) - 2.25), lambda r: min(r / 50.0, 0.3),
+        math.inf, 50.0,
+    ),
+    "truncated_cone": (
+        {"slope": 0.3, "land_radius": 9.0}, lambda x: 0.3 * np.maximum(np.abs(x) - 9.0, 0.0),
+        lambda r: 0.3 * (r > 9.0), math.inf, None,
+    ),
+    "truncated_parabola": (
+        {"radius": 50.0, "land_radius": 9.0}, lambda x: np.maximum(x**2 - 81.0, 0.0) / 100.0,
+        lambda r: r / 50.0 * (r > 9.0), math.inf, None,
+    ),
+    "rounded_punch": (
+        {"radius": 9.0, "edge_radius": 50.0}, lambda x: np.maximum(np.abs(x) - 9.0, 0.0) ** 2 / 100.0,
+        lambda r: max(r - 9.0, 0.0) / 50.0, math.inf, None,
+    ),
 }  # fmt: skip
 """Keys, height, slope, half-width of the body and radius of curvature of each kind that has a formula."""
 

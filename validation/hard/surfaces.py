@@ -22,6 +22,8 @@ SMOOTH = ("parabola", "cone", "power", "circle", "flat_punch", "ellipsoid")
 KINKED = ("land_cone", "worn_ball", "two_slopes", "two_radii", "rounded_punch", "steps")
 ROUND = ("parabola", "circle", "ellipsoid")
 """Those with a curvature at the apex."""
+LAND = (0.0, 0.0, 0.0)
+"""The plane piece of a body."""
 WIDEST = 0.5
 """a/R of spheres, up to which they are searched."""
 
@@ -90,8 +92,22 @@ def power(one: Power | Flat, radius: float) -> Surface:
     return surface(radius, "power", exponent=n, radius=radius, height=one.factor * radius**n)
 
 
-def _body(kind: str, radius: float = 0.0, slope: float = 0.0, height: float = 0.0, exponent: float = 2.0) -> Body:
+def _body(
+    kind: str, radius: float = 0.0, slope: float = 0.0, height: float = 0.0, exponent: float = 2.0,
+    tip_radius: float = 0.0, land_radius: float = 0.0, edge_radius: float = 0.0,
+) -> Body:  # fmt: skip
+    b = tip_radius * slope
     match kind:
+        case "blunt_cone":
+            return pieces((0.0, 0.0, 1.0 / tip_radius), (b, slope, 0.0))
+        case "truncated_cone":
+            return pieces(LAND, (land_radius, slope, 0.0))
+        case "truncated_parabola":
+            return pieces(LAND, (land_radius, land_radius / radius, 1.0 / radius))
+        case "rounded_punch":
+            return pieces(LAND, (radius, 0.0, 1.0 / edge_radius))
+        case "hyperboloid":
+            return Body(lambda r: slope * r / math.hypot(r, b), lambda r: slope * b * b / math.hypot(r, b) ** 3)
         case "cone":
             return Body(lambda _: slope, lambda _: 0.0)
         case "flat_punch":
@@ -114,6 +130,14 @@ def smooth(kind: str, radius: float, slope: float, rng: np.random.Generator) -> 
     """A profile with about that slope at a radius [LU]."""
     end, n = radius / slope, rng.uniform(1.05, 4.0)
     match kind:
+        case "blunt_cone" | "hyperboloid":
+            return surface(radius, kind, slope=slope, tip_radius=end * rng.uniform(0.2, 2.0))
+        case "truncated_cone":
+            return surface(radius, kind, slope=slope, land_radius=radius * rng.uniform(0.2, 0.95))
+        case "truncated_parabola":
+            return surface(radius, kind, radius=end, land_radius=radius * rng.uniform(0.2, 0.95))
+        case "rounded_punch":
+            return surface(radius, kind, radius=radius * rng.uniform(0.2, 0.95), edge_radius=end)
         case "cone":
             return surface(radius, kind, slope=slope)
         case "flat_punch":
@@ -142,17 +166,17 @@ def pieces(*parts: tuple[float, float, float]) -> Body:
 
 def kinked_body(kind: str, b: float, slope: float, rng: np.random.Generator) -> Body:
     """A body whose slope or curvature jumps up at a radius b [LU], with about that slope beyond it."""
-    bend, flat = slope / b, (0.0, 0.0, 0.0)
+    bend = slope / b
     match kind:
         case "land_cone":
-            return pieces(flat, (b, slope, 0.0))
+            return pieces(LAND, (b, slope, 0.0))
         case "worn_ball":
-            return pieces(flat, (b, slope, bend))
+            return pieces(LAND, (b, slope, bend))
         case "two_slopes":
             return pieces((0.0, slope * rng.uniform(0.1, 0.8), 0.0), (b, slope, 0.0))
         case "two_radii":
             return pieces((0.0, 0.0, bend / rng.uniform(1.5, 8.0)), (b, slope, bend))
         case "rounded_punch":
-            return pieces(flat, (b, 0.0, bend))
+            return pieces(LAND, (b, 0.0, bend))
     further, low = b * rng.uniform(1.3, 2.0), slope * rng.uniform(0.2, 0.6)
-    return pieces(flat, (b, low, 0.0), (further, slope, 0.0))
+    return pieces(LAND, (b, low, 0.0), (further, slope, 0.0))
