@@ -3,6 +3,7 @@
 import csv
 import json
 import math
+import tomllib
 from pathlib import Path
 from typing import Any
 from unittest.mock import Mock
@@ -13,6 +14,7 @@ from typer.testing import CliRunner
 
 from contact1d import Contact1dError, SceneError, fit, fit_many
 from contact1d.__main__ import app
+from validation.gallery import PROBLEMS
 from validation.references.force_curves import Sphere, measured, noise
 
 MODULUS, WORK, RADIUS = 2e6, 0.05, 5e-6
@@ -184,6 +186,19 @@ def test_adhesion_that_may_be_none(tmp_path: Path) -> None:
     known = {"instrument": {"stiffness": "40 ± 2 N/m"}, "base": base}
     result = fit(plan(written(tmp_path / "curve.csv", rows), **known))
     assert "W may be 0" in result.warnings["adhesion"]
+
+
+def test_a_blunt_cone_covers(tmp_path: Path) -> None:
+    """A contact on both sides of the kink, by the closed form of the gallery."""
+    tip = next(one for one in PROBLEMS if one.name == "Cone with a parabolic cap: pull-off force")
+    a = np.linspace(1e-9, 2e-5, 9000)
+    d, F = (tip.exact[name](a) for name in "dF")
+    rows = curve(sphere=Mock(range=0.0, branch=lambda _: (d, F)), share=1e-4)
+    bodies = tomllib.loads(tip.scene)["bodies"]
+    found = fit(plan(written(tmp_path / "curve.csv", rows), base=BASE | {"bodies": bodies})).fit
+    for name, symbol in zip(PARAMETERS, "EW", strict=True):
+        low, high = found.intervals[name]
+        assert low < tip.exact[symbol] < high < 1.1 * low
 
 
 def test_a_range_makes_it_the_contact_of_maugis(tmp_path: Path) -> None:

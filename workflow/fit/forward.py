@@ -23,9 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.laws.dugdale import Dugdale
 from contact1d.workflow.laws.jkr import elongation
+from contact1d.workflow.laws.shape import beside_kinks
 from contact1d.workflow.scene import Scene, Shape
 
 Array = NDArray[np.float64]
@@ -64,7 +66,7 @@ class Body:
             shape: the profile.
             depth: range of the measured positions [LU].
             edges: number of edges above 0, in geometric progression over a factor of 500, between which a branch is
-                cubic.
+                cubic; more are at and beside kinks of the profile.
             deepest: least transformed height over `depth` at the last edge, unless the profile ends before.
         """
         last = depth
@@ -73,14 +75,12 @@ class Body:
         while last < shape.reach and float(shape.transformed(np.array([last]))[0]) < deepest * depth:
             last *= 1.3
         a = np.append(0.0, np.geomspace(2e-3, 1.0, edges) * min(last, shape.reach))
+        a = beside_kinks(a, shape.kinks, most_kinks=10)
         g, f = (np.append(0.0, height(a[1:])) for height in (shape.transformed, shape.height))
-        # ∫ g dx of a power between two edges is (g₂x₂ − g₁x₁)/(1 + n), n = log(g₂/g₁)/log(x₂/x₁); up to the first edge
-        # n is that of the first two.
-        with np.errstate(divide="ignore", invalid="ignore"):
-            n = np.where(g[1:-1] > 0.0, np.log(g[2:] / g[1:-1]) / np.log(a[2] / a[1]), math.inf)
-        n = np.append(n[0], n)
-        steps = np.where(np.isfinite(n), np.diff(g * a) / (1.0 + n), 0.5 * (g[1:] + g[:-1]) * np.diff(a))
-        areas = np.append(0.0, np.cumsum(steps))
+        node, weight = gauss(3)
+        half = 0.5 * np.diff(a)
+        inside = shape.transformed(a[:-1, None] + half[:, None] * (1.0 + node))
+        areas = np.append(0.0, np.cumsum(half * (inside @ weight)))
         return cls(a, g, areas, f, shape.curvature_radius)
 
 
