@@ -24,6 +24,8 @@ kind = "load"
 force = "10 N"
 """
 """A scene in SI, every number of which has a unit."""
+MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
+"""Its E* [Pa]."""
 
 
 def chains(radius: float, stiffness: float = 0.83, law: Sequence[float] = LAW, **tables: Any) -> dict[str, Any]:

@@ -12,11 +12,11 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
-from click.testing import Result
 from matplotlib.figure import Figure
 from typer.testing import CliRunner
 
 from contact1d.__main__ import app
+from tests.command import contact1d
 
 ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
@@ -45,10 +45,6 @@ FEW = 2_000
 def _with_a_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     Path("plane.toml").write_text(SCENE)
-
-
-def contact1d(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [*map(str, arguments)])
 
 
 def process(*arguments: str | Path, limit: int = resource.RLIM_INFINITY) -> subprocess.CompletedProcess[str]:

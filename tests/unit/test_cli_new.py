@@ -8,16 +8,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner, Result
 
 from contact1d import read_scene
-from contact1d.__main__ import app
+from tests.command import contact1d
 
 Schema = dict[str, Any]
-
-
-def contact1d(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [*map(str, arguments)])
 
 
 SCHEMA: Schema = json.loads(contact1d("schema").stdout)

@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 
 from contact1d import Contact1dError, Run, from_material, run
 from contact1d.__main__ import app
+from tests.scenes import MODULUS as STEEL_ON_GLASS
 from tests.scenes import chains
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
@@ -28,7 +29,6 @@ GLASS = {"youngs_modulus": 70e9, "poisson_ratio": 0.22}
 BODIES: dict[str, Any] = {"upper": STEEL, "lower": GLASS, "load": "10 N", "tolerance": 1e-2}
 LOADED = BODIES | {"radius": "10 mm"}
 TIP: dict[str, Any] = {"radius": "10 nm", "upper": SILICA, "lower": SILICA, "surface_energy": "0.03 J/m²"}
-STEEL_ON_GLASS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
 SILICA_PAIR = 0.5 * 72e9 / (1.0 - 0.17**2)
 HERTZ = math.cbrt(0.75 * 10.0 * 0.01 / STEEL_ON_GLASS)
 

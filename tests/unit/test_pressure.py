@@ -16,14 +16,10 @@ from contact1d.analysis.pressure import (
 )
 from contact1d.potentials import DoubleExponential, Exponential
 from contact1d.potentials.table import table_for
+from tests.profiles import profile
 
 ROUND_OFF = 1e-14
 """Relative: a few operations on doubles."""
-
-
-def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
-    zero = np.zeros_like(x)
-    return Profile(x, zero, zero, pressure, zero)
 
 
 def test_a_profile_is_sorted_and_per_spacing_and_keeps_signs() -> None:

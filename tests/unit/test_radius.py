@@ -13,6 +13,7 @@ import pytest
 from contact1d.analysis.extremum import position_of_minimum
 from contact1d.analysis.pressure import Profile
 from contact1d.analysis.radius import compressive_radius, held_radius, moved_centre, tensile_radius
+from tests.profiles import profile
 from validation.references.interaction import PairInteraction
 
 BODY_RADIUS = 1000.0  # LU
@@ -25,11 +26,6 @@ SNAP_ERROR = 0.1  # spacings; 0.03 measured: a particle's snap is seen on the la
 TYPICAL_ERROR = 0.15  # spacings, 95 % of cases; 0.04 measured: dips of the shortest range are three spacings wide
 ROUND_OFF = 1e-9
 """[LU], roots of a parabola through three doubles."""
-
-
-def profile(x: np.ndarray, pressure: np.ndarray) -> Profile:
-    zero = np.zeros_like(x)
-    return Profile(x, zero, zero, pressure, zero)
 
 
 @dataclass(frozen=True)

@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
-from typer.testing import CliRunner, Result
 
 from contact1d import Run, RunError, run
-from contact1d.__main__ import app
+from tests.command import contact1d
 from tests.pages import figures_on
 from tests.scenes import chains
 from tests.sweeps import PLANE
@@ -42,10 +41,6 @@ class Balance(HTMLParser):
 
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag
-
-
-def contact1d(*arguments: str | Path) -> Result:
-    return CliRunner().invoke(app, [*map(str, arguments)])
 
 
 def page_of(*folders: Path) -> Path:

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 from contact1d import Scene, SceneError, load_run, read_scene, run
+from tests.scenes import MODULUS
 
 STEEL_ON_GLASS = "lammps_inputs/scenes/steel_on_glass.toml"
 R, NOISE = 1e4, 3e-3
 """[µm]"""
-MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
 X = np.arange(-400.0, 401.0, 1.0)
 Z = X**2 / (2.0 * R) + 40.0 + 0.001 * X + NOISE * np.random.default_rng(5).standard_normal(X.size)
 FIT = "centre = 'auto', fit = 'parabola'"

@@ -12,15 +12,14 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import Contact1dError, FolderError, SceneError, load_run, run, sweep
-from contact1d.__main__ import app
+from tests.command import contact1d
 from tests.pages import figures_on
+from tests.scenes import MODULUS
 from tests.sweeps import BROKEN, FORCE, PLANE, RADIUS, RADIUS_IN_WORDS, Here, Lost, Stated, axis, plane, rows
 
 SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "steel_on_glass.toml"
-MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
 TWO = plane(axis(FORCE, 0.5, 1.0))
 
 
@@ -32,7 +31,7 @@ def points(folder: Path, *axes: Mapping[str, Any], **more: Any) -> list[tuple[fl
 
 def page_of(folder: Path) -> Path:
     page = folder / "page.html"
-    done = CliRunner().invoke(app, ["report", str(folder), "--out", str(page)])
+    done = contact1d("report", folder, "--out", page)
     assert done.exit_code == 0, done.output
     return page
 
@@ -148,10 +147,10 @@ def test_a_page_of_a_broken_table_says_to_start_the_sweep_again(finished: Path, 
     folder = shutil.copytree(finished, tmp_path / "s")
     for content in (b"\xff\xfe\x00", b"status\ndone"):
         (folder / "results.csv").write_bytes(content)
-        page = CliRunner().invoke(app, ["report", str(folder), "--out", str(tmp_path / "page.html")])
+        page = contact1d("report", folder, "--out", tmp_path / "page.html")
         assert (page.exit_code, page.output.count("\n")) == (2, 1)
         assert page.output.endswith("start the run or the sweep again\n")
-    both = CliRunner().invoke(app, ["report", str(finished), str(folder), "--out", str(tmp_path / "page.html")])
+    both = contact1d("report", finished, folder, "--out", tmp_path / "page.html")
     assert "a page shows one of them, or runs" in both.output
     assert not (tmp_path / "page.html").exists()
 
@@ -214,7 +213,7 @@ def test_the_command_prints_counts_and_ends_with_3_where_a_point_failed(finished
     text = (finished / "sweep.toml").read_text().replace("0.5, 1.0", "0.5, 1.0, 900.0")
     (tmp_path / "s.toml").write_text(text)
     asked = ["sweep", str(tmp_path / "s.toml"), "--out", str(out), "--workers", "1", "-q", "--parquet"]
-    result = CliRunner().invoke(app, [*asked, "--format", "svg"])
+    result = contact1d(*asked, "--format", "svg")
     assert result.exit_code == 3
     assert "2 done, 1 failed" in result.output
     assert (out / "displacement.svg").is_file()

@@ -15,12 +15,11 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import SceneError, read_scene, run
+from tests.scenes import MODULUS
 from validation.references.mdr import ReducedContact
 
 PRESSURE = 2e-4
 """Relative, of p(r) inside 0.95 a: the same; measured 3e-5."""
-MODULUS = 1.0 / ((1.0 - 0.3**2) / 210e9 + (1.0 - 0.22**2) / 70e9)
-"""E* of steel on glass [Pa]."""
 LENGTH, LOAD = 1e-6, 10.0
 """One LU [m], F [N]."""
 SLOPES: dict[str, tuple[dict[str, Any], float, Callable[[float], float]]] = {

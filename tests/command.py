@@ -1,0 +1,11 @@
+"""The command line in this process."""
+
+from pathlib import Path
+
+from typer.testing import CliRunner, Result
+
+from contact1d.__main__ import app
+
+
+def contact1d(*arguments: str | Path) -> Result:
+    return CliRunner().invoke(app, [*map(str, arguments)])
