@@ -10,10 +10,9 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import Contact1dError, SceneError, fit, fit_many
-from contact1d.__main__ import app
+from tests.command import contact1d
 from validation.gallery import PROBLEMS
 from validation.references.force_curves import Sphere, measured, noise
 
@@ -78,7 +77,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
         '[base.material]\ncontact_modulus = "1 MPa"\n[base.adhesion]\nwork_of_adhesion = "20 mJ/m²"\n',
         encoding="utf-8",
     )
-    done = CliRunner().invoke(app, ["fit", str(folder / "fit.toml"), "--out", str(folder / "out")])
+    done = contact1d("fit", folder / "fit.toml", "--out", folder / "out")
     assert done.exit_code == 0, done.output
     return folder
 
@@ -111,7 +110,7 @@ def test_the_command_leaves_the_parameters_with_intervals_that_hold_them(folder:
     assert criteria["JKR"] == 0.0 < min(criteria["DMT"], criteria["Hertz"])
     assert found["run"]["difference"] <= found["run"]["allowed"]
     assert {"curve.csv", "scene.toml", "fit.png"} <= {path.name for path in (folder / "out").iterdir()}
-    again = CliRunner().invoke(app, ["fit", str(folder / "fit.toml"), "--out", str(folder)])
+    again = contact1d("fit", folder / "fit.toml", "--out", folder)
     assert again.exit_code == 2
 
 

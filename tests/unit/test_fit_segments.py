@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import fit
-from contact1d.__main__ import app
+from tests.command import contact1d
 from validation.references.relaxing import Indentation, Legs, Material, sphere
 
 MODULUS, CLOSING, RADIUS = 2e6, 0.04, 1e-5
@@ -65,7 +64,7 @@ def test_a_contact_that_closes_and_opens_with_different_work_has_both(tmp_path: 
         low, high = record["segments"][name]["parameters"][W]["interval"]
         assert low < exact < high < 1.02 * low
     page = tmp_path / "page.html"
-    done = CliRunner().invoke(app, ["report", str(tmp_path / "fit"), "--out", str(page)])
+    done = contact1d("report", tmp_path / "fit", "--out", page)
     assert done.exit_code == 0, done.output
     text = page.read_text(encoding="utf-8")
     assert all(words in text for words in ("hysteresis.", "measured pull-off force", '"col">retraction</th>'))

@@ -77,7 +77,7 @@ class Body:
         a = np.append(0.0, np.geomspace(2e-3, 1.0, edges) * min(last, shape.reach))
         a = beside_kinks(a, shape.kinks, most_kinks=10)
         g, f = (np.append(0.0, height(a[1:])) for height in (shape.transformed, shape.height))
-        node, weight = gauss(3)
+        node, weight = gauss(2)
         half = 0.5 * np.diff(a)
         inside = shape.transformed(a[:-1, None] + half[:, None] * (1.0 + node))
         areas = np.append(0.0, np.cumsum(half * (inside @ weight)))
