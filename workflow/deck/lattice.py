@@ -84,10 +84,11 @@ def bodies(scene: Scene, settings: Settings) -> tuple[Body, ...]:
     upper = np.column_stack([along, flat + offset, settings.forces.rest + scene.bodies.height(x)])
     if scene.bodies.lower == "rigid_plane":
         return (_body("upper", upper, scene, settings),)
+    none = upper[:0]
     below = particle_positions(settings.chains.lower, scene.bodies.spacing)
     lower = np.column_stack([below, 0.0 * below, 0.0 * below])
     if scene.bodies.lower == "rigid_chain":
-        return Body("lower", lower, *3 * (np.empty((0, 3)),)), _body("upper", upper, scene, settings)
+        return Body("lower", lower, none, none, none), _body("upper", upper, scene, settings)
     return _body("lower", lower, scene, settings), _body("upper", upper, scene, settings)
 
 

@@ -46,15 +46,14 @@ def entries(table: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [{name: value for name, value in row.items() if value == value} for row in rows]
 
 
-def chart(table: Mapping[str, Any], most_inputs: int = 12) -> Chart:
+def chart(table: Mapping[str, Any]) -> Chart:
     """Return the bar chart of the relative changes of results [%] with the inputs of the table `inputs`.
 
-    The inputs are one below the other, the largest change at the top, at most `most_inputs`. A change that is NaN has
-    no bar.
+    The inputs are one below the other, the largest change at the top. A change that is NaN has no bar.
     """
     names = [name for name in table if name not in INPUT_COLUMNS]
     changes = np.nan_to_num([table[name] for name in names])
-    order = np.argsort(-changes.max(axis=0, initial=0.0), kind="stable")[:most_inputs]
+    order = np.argsort(-changes.max(axis=0, initial=0.0), kind="stable")
     words = [table["input"][row].partition(".")[2].replace("profile.", "") for row in order]
     ticks = {-float(i): text.replace(".", " ").replace("_", " ") for i, text in enumerate(words)}
     filled = 0.8  # share of the axis that bars cover
