@@ -136,8 +136,10 @@ def test_lmp_repeats_the_run_bitwise(make: Make, case: tuple[str, Any], tmp_path
 
 def test_the_stiffness_of_neighbours_is_told_once(tmp_path: Path) -> None:
     """With k_n changed in in.lammps alone a deck gives the forces of a scene with that k_n."""
-    scene = SCENES["path"] | {"title": "told once"}
-    decks = [write_deck(scene | {"neighbours": {"stiffness": k}}, tmp_path / str(k)) for k in (0.3, 0.5)]
+    decks = [
+        write_deck(SCENES["path"] | {"title": "k_n", "neighbours": {"stiffness": k}}, tmp_path / str(k))
+        for k in (0.3, 0.5)
+    ]
     text, given = (decks[0] / "in.lammps").read_text(), "neighbours_bond_coefficient index "
     (decks[0] / "in.lammps").write_text(text.replace(f"{given}0.15", f"{given}0.25"))
     for deck in decks:

@@ -167,7 +167,6 @@ def test_a_line_in_white_noise_has_the_interval_of_student() -> None:
     step, (squares,), *_ = np.linalg.lstsq(slopes, residuals)
     assert white.step == pytest.approx(step, rel=ROUND_OFF)
     assert white.covariance == pytest.approx(squares / 10.0 * np.linalg.inv(slopes.T @ slopes), rel=1e-4)
-    assert found.freedom == 10.0
     ends = found.ends(1, 0.95) + found.best.step[1]
     shares = [e.weight * student.cdf((ends - e.step[1]) / math.sqrt(e.covariance[1, 1]), 10.0) for e in found.estimates]
     assert np.sum(shares, axis=0) == pytest.approx([0.025, 0.975], abs=1e-5)
