@@ -78,8 +78,8 @@ EVERY = [one for one in allowed() if str(one) not in STOPPED]
 LONG = ("maugis", "rate", "kelvin_voigt")
 """Laws whose runs take longest."""
 CHOSEN = sample([one for one in EVERY if one.profile != "table" or one.law not in LONG])
-SLOWEST = tuple(f"{profile}-rate-pull_off_at_a_velocity-quasistatic" for profile in ("truncated_cone", "rounded_punch"))
-"""A contact edge with a rate takes ten seconds on a body with a kink."""
+HEAVY = dict.fromkeys(("blunt_cone", "hyperboloid", "rounded_punch", "truncated_cone"), (*LONG, "attracting noise"))
+"""Laws that are not quick, by profile."""
 
 
 def cases(contract: str, applies: Callable[[Combination], Any], long: tuple[str, ...] = ()) -> Any:
@@ -87,8 +87,8 @@ def cases(contract: str, applies: Callable[[Combination], Any], long: tuple[str,
     found = []
     for one in EVERY:
         if applies(one):
-            quick = one in CHOSEN and one.law not in long and str(one) not in SLOWEST
-            marks: list[Any] = [] if quick else [pytest.mark.slow]
+            quick = one in CHOSEN and one.law not in (*long, *HEAVY.get(one.profile, ()))
+            marks: list[Any] = [pytest.mark.slow] * (not quick)
             if reason := KNOWN.get(f"{contract} {one}") or KNOWN.get(str(one)):
                 marks.append(pytest.mark.xfail(strict=True, reason=reason))
             found.append(pytest.param(one, id=str(one), marks=marks))
