@@ -24,6 +24,7 @@ import numpy as np
 import pytest
 
 import contact1d
+from tests.hard.test_report_in_browser import browser as browser
 
 pytestmark = pytest.mark.browser
 SITE = Path(__file__).parents[2] / "site"
@@ -57,17 +58,6 @@ def address() -> Iterator[str]:
     yield f"http://127.0.0.1:{server.server_port}/"
     server.shutdown()
     server.server_close()
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """The system's Chromium."""
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as play:
-        chromium = play.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
-        yield chromium
-        chromium.close()
 
 
 @pytest.fixture
