@@ -38,12 +38,15 @@ NAMES = {
 def quantities(results: Mapping[str, Any]) -> list[str]:
     """Return a line with the reduction to one dimension, and one for each result: name, value ± uncertainty, theory.
 
-    Values have their unit: in SI, with a prefix, where the units are known, and LU and FU are printed where they are
+    The first lines have the reduction and the effects. Values have their unit: in SI, with a prefix, where the units are known, and LU and FU are printed where they are
     not 1 m and 1 N. The uncertainty has two digits, the value as many decimals. A result too uncertain is "not
-    reported". Lines on a scan and on uncertain inputs are added where there are any, and the first line is left out
-    where `results`, the content of results.json, has no reduction.
+    reported". Lines on a scan and on uncertain inputs are added where there are any, and the first two lines are left
+    out where `results`, the content of results.json, has no reduction.
     """
-    lines = [f"  {'reduction':<31} {_reduction(results)}"] if "reduction" in results else []
+    lines = list[str]()
+    if "reduction" in results:
+        lines.append(f"  {'reduction':<31} {_reduction(results)}")
+        lines.append(f"  {'effects':<31} {', '.join(results['effects']) or 'none'}")
     if scan := results.get("scan"):
         lines += [f"  {'scan' * (not i):<31} {part}" for i, part in enumerate(scan["text"].split("; "))]
     for name, entry in results_in(results).items():
