@@ -21,6 +21,8 @@ LINE_PRESSURE = "FU/LU"
 ENERGY = "FU·LU"
 MASS = "MU"
 TIME = "TU"
+VELOCITY = "LU/TU"
+SPIN = "1/TU"
 NUMBER = "1"
 
 
@@ -54,13 +56,15 @@ SI = {
     ENERGY: ModelUnit("J", 1.0, 1.0),
     MASS: ModelUnit("kg", 0.0, 0.0, 1.0),
     TIME: ModelUnit("s", 0.5, -0.5, 0.5),
-    "LU/TU": ModelUnit("m/s", 0.5, 0.5, -0.5),
+    VELOCITY: ModelUnit("m/s", 0.5, 0.5, -0.5),
     "FU/TU": ModelUnit("N/s", -0.5, 1.5, -0.5),
     "FU·TU/LU": ModelUnit("N·s/m", -0.5, 0.5, 0.5),
+    SPIN: ModelUnit("rad/s", -0.5, 0.5, -0.5),
+    "MU·LU²": ModelUnit("kg·m²", 2.0, 0.0, 1.0),
     NUMBER: ModelUnit("1"),
 }
 """The units of the model by their names."""
-WITH_PREFIX = (*(unit.si for unit in SI.values() if unit.si not in ("kg", "1")), "J/m²")
+WITH_PREFIX = (*(unit.si for unit in SI.values() if unit.si not in ("kg", "kg·m²", "1")), "J/m²")
 """SI units that take a prefix."""
 PREFIXES = "yzafpnµm kMGT"
 """SI prefixes by rising powers of 1000; the blank is no prefix."""

@@ -36,9 +36,9 @@ NAMES = {
 
 
 def quantities(results: Mapping[str, Any]) -> list[str]:
-    """Return a line with the reduction to one dimension, and one for each result: name, value ± uncertainty, theory.
+    """Return lines with the reduction to one dimension, the effects, and each result: value ± uncertainty, theory.
 
-    The first lines have the reduction and the effects. Values have their unit: in SI, with a prefix, where the units are known, and LU and FU are printed where they are
+    Values have their unit: in SI, with a prefix, where the units are known, and LU and FU are printed where they are
     not 1 m and 1 N. The uncertainty has two digits, the value as many decimals. A result too uncertain is "not
     reported". Lines on a scan and on uncertain inputs are added where there are any, and the first two lines are left
     out where `results`, the content of results.json, has no reduction.

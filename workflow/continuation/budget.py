@@ -107,8 +107,9 @@ def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
 
     It is |change| of the result on the reduced model from these load steps to dense ones: in a quasi-static run on a
     rigid plane, where the model has the particles of LAMMPS, times 1.25; else times 1.5, the largest of four, with the
-    steps shifted by 0, ¼, ½ and ¾ of their median. A result that one of both lacks counts as 0 there. On the plane the
-    spacing is doubled where there are too many forces, down to about `fewest` particles: steps miss as much on any.
+    steps shifted by 0, ¼, ½ and ¾ of their median, but for a free motion, which begins at the first touch. A result
+    that one of both lacks counts as 0 there. On the plane the spacing is doubled where there are too many forces, down
+    to about `fewest` particles: steps miss as much on any.
     """
     model, errors = case.model, dict[str, float]()
     step = float(np.median(np.abs(np.diff(trace.displacement)))) if len(trace) > 1 else 0.0
@@ -116,7 +117,7 @@ def sampling_errors(case: Reduction, trace: Trace, fewest: int = 200) -> Values:
     margin = 1.25 if is_copy else 1.5  # dense steps have errors, too, and a search may end elsewhere
     while is_copy and model.dense * len(trace) * model.x.size > MOST_NUMBERS and model.x.size > fewest:
         model = model.resized(2.0)
-    for shift in range(1 if is_copy else 4):
+    for shift in range(4 if trace.given and not is_copy else 1):
         share = shift / 4.0
         dense = case.values(model, model.dense, share * step)
         sparse = case.values(model, 1, share * step) if share or model is not case.model else case.results

@@ -34,6 +34,8 @@ MOTION = {
 }  # fmt: skip
 """Of a slide: means since the start over every fifth step of the cantilever's force and of the kinetic energies of
 particles and plate; energies; velocities and positions."""
+PLACE, SLIP_VELOCITY = "xcm(plate,x)", "vcm(plate,x)"
+"""LAMMPS's names of the position and velocity along x of the contact point of a body that hits obliquely."""
 HEAT_FRAGMENT = "steps/tallied_heat"
 """The fragment after which a heat bath reports the energy that it takes."""
 FRAMES = "rows.bin"
@@ -317,6 +319,8 @@ class Contact:
         names = {"plate_displacement": "LU", "step": "1"}
         if self.scene.plate:
             names |= {"plate_velocity": "LU/TU", "plate_force": "FU"}
+        if self.scene.is_oblique:
+            names |= {PLACE: "LU", SLIP_VELOCITY: "LU/TU"}
         if self.scene.cantilever:
             names |= {"cantilever_plate": "LU", "cantilever_force": "FU"} | MOTION
             if self._heat_is_reported:
@@ -349,7 +353,8 @@ class Contact:
             # LAMMPS looks for lost atoms when it makes a new neighbour list, and a load step may end before.
             raise self._lost(f"atoms are missing: only {count} particles are left in the box", int(numbers["step"]))
         position, force = atoms["x"], atoms[self.force_name]
-        x, z = position[upper, 0], position[upper, 2]
+        plate_x = numbers.get(PLACE, numbers.get("cantilever_plate", 0.0))
+        x, z = position[upper, 0] - numbers.get(PLACE, 0.0), position[upper, 2]
         if lower.any():
             x_low, z_low = self._surface(position[lower, 0], position[lower, 2])
             closest = smallest_distance(x, z, x_low, z_low)
@@ -379,10 +384,10 @@ class Contact:
             missing=self._missing(atoms, upper),
             pushed=float(sum(numbers[name] for name in self._pushes)),
             plate_velocity=-numbers.get("plate_velocity", 0.0),
-            plate_x=numbers.get("cantilever_plate", 0.0),
+            plate_x=plate_x,
             cantilever_force=numbers.get("cantilever_force", 0.0),
             step=numbers["step"],
-            motion={name: numbers[name] for name in (*MOTION, *HEAT) if name in numbers},
+            motion={name: numbers[name] for name in (*MOTION, *HEAT, SLIP_VELOCITY) if name in numbers},
             number=number,
         )
 

@@ -23,7 +23,7 @@ from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Fly, Launch, numbered
+from contact1d.workflow.deck.steps import Fly, launch, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
@@ -245,7 +245,7 @@ class ContactBranch:
         """
         self.moves, self.given, steps = True, "", stretch(self.settings, velocity)
         self._turn(rises=True)
-        for name, row in (("touching", Launch(velocity, steps)), ("impact", Fly(steps))):
+        for name, row in (("touching", launch(self.scene, velocity, steps)), ("impact", Fly(steps))):
             self.begin(name)
             self._begin_phase()
             self._append(self.contact.rows([row], moving=True))

@@ -17,7 +17,7 @@ from contact1d.workflow.deck.units import DeckUnits
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.model.chain import MIX_UP
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene
+from contact1d.workflow.scene import Impact, Scene
 
 MINIMISER_ITERATIONS = 20_000
 CHOSEN_BINS = ("far_bin", "wide_bin")
@@ -160,12 +160,14 @@ def margins(scene: Scene, settings: Settings) -> tuple[float, float, float]:
     """Return the free space along x, y and z [LU] on each side between the bodies and the walls of the box.
 
     They are rounded up to whole numbers: along x 20 spacings and the largest displacement of the drive or the path
-    along x, along y 1 LU; along z ten spacings or ten cutoffs, whichever is more, and twice the largest displacement,
-    both ten times as much for a free plate with noise or in a slide, and the largest prescribed separation. More where
-    the box would be thin compared with bins or long bonds.
+    along x, or that of a body that hits obliquely; along y 1 LU; along z ten spacings or ten cutoffs, whichever is
+    more, and twice the largest displacement, both ten times as much for a free plate with noise or in a slide, and the
+    largest prescribed separation. More where the box would be thin compared with bins or long bonds.
     """
     spacing = scene.bodies.spacing
     side = 20.0 * spacing + scene.experiment.excursion
+    if isinstance(scene.experiment, Impact):  # twice as long as half an oscillation
+        side += 2.0 * math.pi * abs(scene.slip_velocity) * settings.largest_displacement / scene.experiment.velocity
     head = 10.0 * max(spacing, settings.forces.cutoff) + 2 * abs(settings.largest_displacement)
     if scene.plate and (scene.noise or scene.experiment.motion_is_result):
         head *= 10.0  # a free plate may fly off between two measurements; under a held load LAMMPS stops it

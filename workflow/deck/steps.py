@@ -21,12 +21,13 @@ from numpy.typing import NDArray
 
 from contact1d.files import whole
 from contact1d.workflow.deck.effects import number
+from contact1d.workflow.scene import Scene
 
 UNITS = (
     dict.fromkeys(("displacement", "place", "parted", "through", "end", "edge", "reach", "height"), "LU")
     | dict.fromkeys(("load", "rest"), "FU")
     | dict.fromkeys(("damping", "drag"), "FU·TU/LU")
-    | {"spring": "FU/LU", "duration": "TU", "velocity": "LU/TU"}
+    | {"spring": "FU/LU", "duration": "TU", "velocity": "LU/TU", "slip": "LU/TU"}
 )
 """Units of the numbers in rows; integers have none."""
 
@@ -128,6 +129,14 @@ class Launch(Row):
 
 
 @dataclass(frozen=True)
+class LaunchAlong(Launch):
+    """The plate also moves along x, at first at the velocity of the contact point, `slip` [LU/TU]."""
+
+    step: ClassVar[str] = "launch_along"
+    slip: float
+
+
+@dataclass(frozen=True)
 class Fly(Row):
     """The plate moves on for a number of timesteps."""
 
@@ -170,7 +179,24 @@ class Hold(Row):
     steps: int
 
 
-STEPS: tuple[type[Row], ...] = (Displace, Cohere, Spend, Draw, DisplaceInTime, UnderLoad, Launch, Fly, DrawnOff, Hold)
+def launch(scene: Scene, velocity: float, steps: int) -> Launch:
+    """Return the first row of an impact at a `velocity` [LU/TU] for a number of timesteps, along x where it slips."""
+    return LaunchAlong(velocity, steps, scene.slip_velocity) if scene.is_oblique else Launch(velocity, steps)
+
+
+STEPS: tuple[type[Row], ...] = (
+    Displace,
+    Cohere,
+    Spend,
+    Draw,
+    DisplaceInTime,
+    UnderLoad,
+    Launch,
+    LaunchAlong,
+    Fly,
+    DrawnOff,
+    Hold,
+)
 
 
 @dataclass(frozen=True)

@@ -44,7 +44,8 @@ def with_spacing(scene: Scene) -> Scene:
     if scene.bodies.given_spacing != "auto":
         return scene
     radius = contact_radius(scene)
-    chosen, error = spaced_within_tolerance(partial(_spaced, scene, radius))
+    share = 0.5 if scene.is_oblique else 0.9  # of the tolerance: timesteps take a part of that of sliding particles
+    chosen, error = spaced_within_tolerance(partial(_spaced, scene, radius), share)
     tolerance = scene.accuracy.tolerance
     if tolerance < error < math.inf:  # the run reports the radius that has an infinite error
         larger = "" if error > 0.9 * LARGEST else f"use an accuracy.tolerance of {_rounded_up(error)}, or "
@@ -58,9 +59,7 @@ def with_spacing(scene: Scene) -> Scene:
     return chosen
 
 
-def spaced_within_tolerance(
-    scene_of: Callable[[int], Scene], share: float = 0.9, fewest: int = 30
-) -> tuple[Scene, float]:
+def spaced_within_tolerance(scene_of: Callable[[int], Scene], share: float, fewest: int = 30) -> tuple[Scene, float]:
     """Return (scene whose discretisation error is below a share of its tolerance, that error, relative).
 
     With 5000 particles, or after 8 trials, the error may be larger, or infinite.

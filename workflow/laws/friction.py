@@ -8,7 +8,7 @@ result is LAMMPS's own.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Self
 
@@ -168,9 +168,42 @@ class SlidingSprings(Springs):
         The elastic energy is ½ Σ (k u² + s²/k_t) with the tangential force s of each particle [FU]; the path begins
         without a tangential force.
         """
-        _, steps = self._slid(path)
-        stored = 0.5 * float(np.sum(steps.force[-1:] ** 2)) / self.chain.tangential
-        return super().energies(path)[0] + stored, float(steps.work.sum())
+        normal, tangential, slipped = (float(column[-1]) for column in self.booked(path))
+        return normal + tangential, slipped
+
+    def booked(self, path: Path) -> tuple[Array, Array, Array]:
+        """Return (½ Σ k u², ½ Σ s²/k_t, work of slip since the start) in each state of a path, (m,) [FU·LU] each."""
+        normal, steps = self._slid(path)
+        chain, shears = self.chain, np.pad(steps.force, ((1, 0), (0, 0)))
+        stored = [0.5 * np.sum(f**2, axis=1) / k for f, k in ((normal, chain.normal), (shears, chain.tangential))]
+        return *stored, np.append(0.0, np.cumsum(steps.work.sum(axis=1)))
+
+    def force_in_time(self) -> Callable[[float, float, float], float]:
+        """Return a function of F = k Σ max(0, d − h) [FU], called with (displacement d [LU], time, velocity)."""
+        heights, normal = self.chain.heights, self.law.stiffness
+        return lambda displacement, time, velocity: normal * float(np.maximum(displacement - heights, 0.0).sum())
+
+    def shear_in_time(self) -> Callable[[float, float], float]:
+        """Return a function of the tangential force Σ s [FU] that resists a motion of the body along +x.
+
+        It is called state by state with (next displacement, next position along x) [LU], and remembers the state. A
+        particle that begins or ends to touch moves along for the part of the step in which it touches.
+        """
+        chain, depth, place = self.chain, 0.0, 0.0
+        overlap, shear = np.zeros_like(chain.heights), np.zeros_like(chain.heights)
+
+        def force(displacement: float, along: float) -> float:
+            """Return Σ s [FU] at a displacement and a position along x [LU]."""
+            nonlocal depth, place, overlap, shear
+            pressed, moved = np.maximum(displacement - chain.heights, 0.0), displacement - depth
+            touched = (pressed - overlap) / moved if moved else np.sign(pressed)
+            limit = chain.coefficient * chain.normal * pressed
+            pushed = shear + chain.tangential * (along - place) * touched
+            shear = np.minimum(np.maximum(pushed, -limit), limit)
+            depth, place, overlap = displacement, along, pressed
+            return float(shear.sum())
+
+        return force
 
     def prescribed(self, path: Path) -> dict[str, Array]:
         """Return the columns {"displacement": normal displacement d, "place": position along x} of a path, (m,) [LU]

@@ -131,6 +131,13 @@ class Particles(ABC):
         """
         return None
 
+    def booked(self, path: Path) -> tuple[Array, Array, Array] | None:
+        """Return (normal elastic energy, tangential one, work of slip so far) of each state, (m,) [FU·LU] each.
+
+        None, as by default, where particles have no tangential force. The path begins with separated bodies.
+        """
+        return None
+
     def checked(self, path: Path, finer: int) -> Path:
         """Return the path along which the work of a run is compared with `energies`: many equilibria, from separated
         bodies on.
@@ -180,6 +187,14 @@ class Particles(ABC):
             return 0.0 if is_lost else float(self.held(np.asarray([displacement]))[0])
 
         return force
+
+    def shear_in_time(self) -> Callable[[float, float], float]:
+        """Return a function of the tangential force [FU] with which the contact resists a motion of the body along +x.
+
+        It is called state by state with (next displacement, next position along x) [LU], from 0, and remembers the
+        state. By default it is 0.
+        """
+        return lambda displacement, along: 0.0
 
     @property
     def parted(self) -> float | None:

@@ -80,7 +80,8 @@ def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, 
 
     It also ends where the body moves down again, and after 20 000 states. Displacements [LU], times [TU] from 0 on and
     velocities [LU/TU], (m,), positive in approach, have `dense` states for each one of a run in LAMMPS. Velocity Verlet
-    of M d″ = −F(d, time), without drag, takes 16 steps for each state of a run.
+    of M d″ = −F(d, time), without drag, takes 16 steps for each state of a run. Of an oblique impact it is also that of
+    the contact point along x, u″ = −F_t (1 + m l²/I)/M, with the velocity v_t − l ω at first.
 
     Raises:
         AssertionError: the scene has no plate, or one with an automatic mass M.
@@ -89,20 +90,33 @@ def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, 
     assert scene.plate.mass != "auto"
     steps, time = max(1, 16 // dense), stretch(settings, velocity) * settings.motion.time_step / dense
     step, contact_force, mass = time / steps, model.force_in_time(), scene.plate.mass
-    displacement, force = 0.0, 0.0
-    displacements, forces, velocities = [0.0], [0.0], [velocity]
+    displacement, force, along, shear, slip, shear_force = (
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        scene.slip_velocity,
+        model.shear_in_time(),
+    )
+    lighter = mass / (1.0 + scene.spin_ratio) if scene.is_oblique else mass
+    displacements, forces, velocities, places = [0.0], [0.0], [velocity], [0.0]
     while len(displacements) < FLIGHT * dense or not is_over(displacements, forces, FLIGHT * dense):
         for _ in range(steps):
             velocity -= 0.5 * step * force / mass
+            slip -= 0.5 * step * shear / lighter
+            along += step * slip
             before, displacement = displacement, displacement + step * velocity
             if model.limits and displacement < model.limits[0] <= before:  # the force ends there, within the step
                 velocity -= step * force / mass * ((before - model.limits[0]) / (before - displacement) - 0.5)
             force = contact_force(displacement, step, velocity - 0.5 * step * force / mass)
             velocity -= 0.5 * step * force / mass
+            shear = shear_force(displacement, along)
+            slip -= 0.5 * step * shear / lighter
         displacements.append(displacement)
         forces.append(force)
         velocities.append(velocity)
+        places.append(along)
         if len(displacements) > MOST_STEPS:
             break
     path = np.asarray(displacements)
-    return Path(path, np.zeros_like(path), time * np.arange(float(path.size)), np.asarray(velocities))
+    return Path(path, np.asarray(places), time * np.arange(float(path.size)), np.asarray(velocities))

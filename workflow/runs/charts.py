@@ -26,7 +26,7 @@ from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.laws import law_of
 from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.report import COLUMN_UNITS
-from contact1d.workflow.scene import History
+from contact1d.workflow.scene import Friction, History
 from contact1d.workflow.scene.tables import SPHERES
 from contact1d.workflow.units import NUMBER
 
@@ -126,9 +126,11 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         yield DETACHMENTS, figures.detachments(run.detachments["force"])
     if SAMPLE_TABLE in run.tables:
         yield SAMPLE_TABLE, _samples(run)
-    if scene.friction:
+    if scene.is_oblique:
+        yield from _oblique(run)
+    if scene.experiment.goes_along:
         yield "tangential", path_chart(run, tangential_force=_mindlin(run))
-        yield "stick_slip", figures.stick_slip(profiles, scene.friction.coefficient, _zones(run, profiles))
+        yield "stick_slip", figures.stick_slip(profiles, scene.the(Friction).coefficient, _zones(run, profiles))
     elif over != "displacement":
         name = "friction" if run.friction else f"{up}_{over}"
         yield name, path_chart(run, force=_ting(run, over) if up == "force" else [])
@@ -147,6 +149,24 @@ def _charts(run: Run) -> Iterator[tuple[str, Chart]]:
         yield "shear_3d", figures.body("shear_stress", shears, marks, {})
     if taken := scene.bodies.profile.taken:
         yield "scan", figures.scan(taken)
+
+
+def _oblique(run: Run) -> Iterator[tuple[str, Chart]]:
+    """Yield ("trajectory", …), ("force_ratio", …) and ("stick_zone", …), the figures of an oblique impact with names.
+
+    They have the displacement over the position of the contact point along x [LU]; tangential over normal force over
+    time [TU] beside ±μ; and contact radius and stick radius over time [LU].
+    """
+    curve, coefficient = run.curve, run.scene.the(Friction).coefficient
+    yield "trajectory", path_chart(run, {name: curve[name] for name in ("contact_point_x", "displacement")})
+    time, legs, ends = axis_of("time"), legs_of(run, curve.time), curve.time[[0, -1]]
+    ratio = np.divide(curve.tangential_force, curve.force, out=np.full_like(curve.force, nan), where=curve.force > 0.0)
+    limits = [(f"{sign}$\\mu$", ends, np.full(2, float(f"{sign}1")) * coefficient) for sign in "+-"]
+    shares = Axis("tangential over normal force", NUMBER)
+    yield "force_ratio", figures.path(time, curve.time, legs, (shares, ratio, figures.lines(*limits)))
+    sticks = figures.lines(("stick radius", curve.time, curve.stick_radius))
+    panel = axis_of("contact_radius"), curve.contact_radius, sticks
+    yield "stick_zone", figures.path(time, curve.time, legs, panel)
 
 
 def path_chart(run: Run, columns: Mapping[str, Array] | None = None, **references: Sequence[Series]) -> Chart:

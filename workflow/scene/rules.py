@@ -30,7 +30,7 @@ from contact1d.workflow.scene.draft import (
     limit,
 )
 from contact1d.workflow.scene.experiments import KINDS
-from contact1d.workflow.scene.kinds import Cycles, Span
+from contact1d.workflow.scene.kinds import UNMOVED, Cycles, Span
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.tables import (
@@ -264,6 +264,20 @@ RULES: tuple[Rule, ...] = (
      "missing, needed by an impact: it has the mass of the body", "add [plate] with mass"),
     ("plate.mass", "experiment.kind=impact plate.mass=auto",
      "must be given in an impact (MU): it is that of the body", "give its mass"),
+    ("friction", "experiment.kind=impact !oblique", f"not in an impact at a right angle: {UNMOVED}",
+     "remove it, or give experiment.tangential_velocity or experiment.spin"),
+    ("friction", "oblique", "missing, needed by an impact with tangential velocity or spin",
+     f"add {EFFECT_TABLES['friction'].how}"),
+    *((name, "oblique", f"not with a tangential velocity or a spin: how friction acts on {bodies} has no agreed theory",
+       "remove it, or give the normal velocity alone")
+      for name, bodies in (("adhesion", "an adhesive edge"), ("viscoelasticity", "a body that relaxes"))),
+    ("plate.damping", "oblique !plate.damping=auto", "not with a tangential velocity or a spin: the body is free",
+     "remove it"),
+    ("plate.lever_arm", "oblique plate.lever_arm=auto !bodies.profile.kind=parabola|bodies.profile.kind=circle",
+     "must be given for this profile (LU): the distance of the contact point from the centre of mass", "give it"),
+    *((key, f"!oblique !{key}=auto", "only in an impact with tangential velocity or spin",
+       "remove it, or give experiment.tangential_velocity or experiment.spin")
+      for key in ("plate.lever_arm", "plate.moment_of_inertia")),
     ("plate", "experiment.kind=hold experiment.displacement",
      "not with a displacement that is held: the plate has no motion of its own", "remove it, or give a force"),
     ("plate", "experiment.kind=hold experiment.force",

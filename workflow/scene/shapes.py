@@ -86,6 +86,11 @@ class Shape(Table):
         return None
 
     @property
+    def ball_radius(self) -> float | None:
+        """Radius [LU] of the ball that the upper body is: of a parabola its own radius, of a circle; else None."""
+        return None
+
+    @property
     def kinks(self) -> tuple[float, ...]:
         """Radii [LU] off the axis, rising, at which the slope or the curvature jumps, where pieces of a body meet.
 
@@ -171,6 +176,11 @@ class Parabola(Shape):
         return self.curvature_radius
 
     @property
+    def ball_radius(self) -> float:
+        """The radius R₁ [LU] of the upper body alone."""
+        return self.radius
+
+    @property
     def steepest(self) -> Self:
         """A parabola with the smaller magnitude of the two radii, R₁ or R₂ of the lower body, on a plane.
 
@@ -214,6 +224,11 @@ class Circle(Shape):
 
     @property
     def curvature_radius(self) -> float:
+        """The radius R [LU] of the circle."""
+        return self.radius
+
+    @property
+    def ball_radius(self) -> float:
         """The radius R [LU] of the circle."""
         return self.radius
 

@@ -39,7 +39,7 @@ from contact1d.workflow.scene.effects import (
     Plate,
     Viscoelasticity,
 )
-from contact1d.workflow.scene.experiments import Experiment
+from contact1d.workflow.scene.experiments import Experiment, Impact
 from contact1d.workflow.scene.kinds import Method
 from contact1d.workflow.scene.materials import BY_NAME
 from contact1d.workflow.scene.profiles import Profile
@@ -440,6 +440,39 @@ class Tables(Table):
         if given is not None:
             return given
         return self.bulk_stiffness * (1.0 if self.material is None else self.material.tangential_share())
+
+    @property
+    def is_oblique(self) -> bool:
+        """Whether the scene is an impact with a tangential velocity or a spin."""
+        return self.experiment.is_oblique
+
+    @property
+    def spin_ratio(self) -> float:
+        """m l²/I of an oblique impact, with the lever arm l of the contact point, the mass m and moment of inertia I.
+
+        Friction accelerates the contact point as a body of mass m/(1 + m l²/I): 2/7 m of a solid ball.
+        """
+        plate = self.the(Plate)
+        if plate.moment_of_inertia == "auto":
+            return 2.5  # of a solid ball
+        assert plate.mass != "auto"
+        return plate.mass * self.lever_arm**2 / plate.moment_of_inertia
+
+    @property
+    def lever_arm(self) -> float:
+        """Distance l [LU] of the contact point from the centre of mass of an oblique impact: given, else the ball's."""
+        given = self.the(Plate).lever_arm
+        radius = self.bodies.profile.ball_radius if given == "auto" else given
+        assert radius is not None
+        return radius
+
+    @property
+    def slip_velocity(self) -> float:
+        """Velocity of the contact point along x [LU/TU] before an oblique impact, v_t − l ω; else 0."""
+        impact = self.experiment
+        if not isinstance(impact, Impact) or not impact.is_oblique:
+            return 0.0
+        return (impact.tangential_velocity or 0.0) - self.lever_arm * (impact.spin or 0.0)
 
     @property
     def chains(self) -> int:
