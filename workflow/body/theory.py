@@ -2,7 +2,8 @@
 
 Without adhesion: Hertz, Sneddon, Galin. Adhesive on a plane: JKR and its extensions to other profiles, Maugis and
 Dugdale with a range, and with DMT where the Tabor parameter is below that of JKR. A sphere with an interaction: JKR,
-Maugis and Dugdale or DMT by the Tabor parameter. Tangential displacement with friction: Cattaneo and Mindlin.
+Maugis and Dugdale or DMT by the Tabor parameter. Tangential displacement with friction: Cattaneo and Mindlin. Oblique
+impact: the limits of gross sliding and of full stick.
 
 results.json has them as `theory`: a list of {"name", "source", "applies", "values"}, and "tabor" where the values
 depend on it; of each result in `values` the closed form's "value" and "unit", with known units "si", and "deviation",
@@ -24,6 +25,7 @@ import numpy as np
 
 from contact1d.analysis.pressure import Array
 from contact1d.analysis.theory.adhesion import Theory, of_tabor, valid_theory
+from contact1d.analysis.theory.impact import full_stick
 from contact1d.analysis.theory.indenters import Contact, PowerLaw
 from contact1d.analysis.theory.mindlin import (
     mindlin_cycle_energy,
@@ -33,8 +35,8 @@ from contact1d.analysis.theory.mindlin import (
 )
 from contact1d.analysis.theory.relaxing import Indented
 from contact1d.workflow.body.cases import Case, Values
-from contact1d.workflow.scene import Friction, Scene
-from contact1d.workflow.units import Quantity, Scales, scale_of
+from contact1d.workflow.scene import Friction, Impact, Scene
+from contact1d.workflow.units import NUMBER, Quantity, Scales, scale_of
 
 ANY = ""
 """The kind of profile of a closed form for several kinds."""
@@ -153,7 +155,8 @@ def in_words(results: Mapping[str, Any], name: str) -> Iterator[str]:
             # Smaller deviations are round-off, and + 0.0 makes no −0 of them.
             off = "" if deviation is None else f" ({round(100.0 * deviation, 6) + 0.0:+.2g} %)"
             tabor_parameter = f" (μ = {form['tabor']:.3g})" if "tabor" in form else ""
-            yield f"{form['name']}{tabor_parameter} {entry['value'] * factor:.5g} {unit}{off}"
+            size = f"{entry['value'] * factor:.5g} {unit}".removesuffix(f" {NUMBER}")
+            yield f"{form['name']}{tabor_parameter} {size}{off}"
 
 
 # Without adhesion. Under a given F: d, a, F/πa², p(0), dF/dd = 2E*a; at a given d: F, a and the pressures.
@@ -415,6 +418,35 @@ def _mindlin_values(case: Case) -> Values:
     return values if experiment.normal_forces() else values | {"normal_force": contact[0]}
 
 
+# Oblique impact: what a body does that slips until it stops, and one that never slips.
+
+
+def _oblique(case: Case) -> str:
+    """Return text that states the condition of theories of oblique impacts; "" of another experiment, or v_s = 0."""
+    return "a body that hits a plane obliquely, with friction" if case.scene.slip_velocity else ""
+
+
+def _sticks(case: Case) -> str:
+    """Return text that states the condition of an oblique impact without slip, for a power of the radius; else ""."""
+    return "an oblique impact without slip" if _oblique(case) and case.kind in ("parabola", "cone", "power") else ""
+
+
+def _sliding_values(case: Case) -> Values:
+    """Return {"tangential_restitution": −max(0, 1 − 2 μ v_n (1 + m l²/I)/|v_s|)} of gross sliding, until v_s is 0."""
+    scene, impact = case.scene, case.scene.experiment
+    assert isinstance(impact, Impact)
+    slowed = 2.0 * scene.the(Friction).coefficient * impact.velocity * (1.0 + scene.spin_ratio)
+    return {"tangential_restitution": min(0.0, slowed / abs(scene.slip_velocity) - 1.0)}
+
+
+def _sticking_values(case: Case) -> Values:
+    """Return {"tangential_restitution": −v_s′/v_s of full stick}, which does not depend on the angle."""
+    scene, body = case.scene, case.body
+    assert isinstance(body, PowerLaw)
+    chi = 0.5 * scene.tangential_stiffness / scene.bulk_stiffness * (1.0 + scene.spin_ratio)
+    return {"tangential_restitution": -full_stick(body.exponent, chi)}
+
+
 # Viscoelastic, indented once by a given displacement: F over time, and the time of the separation.
 
 
@@ -533,6 +565,10 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
             drawn_along,
             _mindlin_values,
         ),
+    ),
+    "oblique": (
+        ClosedForm("gross sliding", "K. L. Johnson, Contact Mechanics, 1985, section 11.4", _oblique, _sliding_values),
+        ClosedForm("full stick", "N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101", _sticks, _sticking_values),
     ),
     "relaxing": (
         ClosedForm(

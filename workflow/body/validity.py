@@ -81,7 +81,27 @@ def checks(scene: Scene, outcome: Outcome, quantities: Mapping[str, Quantity], s
     if radius <= 0.0:
         return []
     case = Case(scene, quantities, scales)
-    return [*_slope(case, radius), *_half_width(case, radius), *_tabor(case), *_yield(case, outcome)]
+    return [
+        *_slope(case, radius), *_half_width(case, radius), *_tabor(case), *_yield(case, outcome), *_similarity(case),
+    ]  # fmt: skip
+
+
+def _similarity(case: Case, limit: float = 0.1) -> Iterator[Check]:
+    """Yield one check of |β| of Dundurs in a contact with friction: normal and tangential displacements are coupled.
+
+    Nothing without friction, or where the material is not known. The limit is a convention; the message is there also
+    where the check holds.
+    """
+    scene = case.scene
+    if scene.friction is None or scene.material is None or not scene.material.elastic:
+        return
+    beta = abs(scene.material.dundurs())
+    value, most = apart(beta, limit)
+    message = (
+        f"the bodies are not elastically similar: Dundurs' |β| is {value}, and the theory, which does not couple "
+        f"normal and tangential displacements, is exact for 0 and used below {most}"
+    )
+    yield Check("similarity", "|β|", beta, limit, beta <= limit, message)
 
 
 def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:

@@ -197,13 +197,14 @@ def _along(trace: Trace, scene: Scene, normal: Reading) -> dict[str, Reading]:
     assert isinstance(given, Impact)
     step, back, last = (float(column[-1] - column[-2]) for column in (trace.time, trace.displacement, trace.along))
     back, last, mass = -back / step, last / step, lighter * (1.0 + scene.spin_ratio)
+    digits = 2.0 * np.finfo(np.float64).eps * len(trace)  # of a difference of two positions
     drawn, speed = lighter * (slip - last), abs(slip) or given.velocity
     size = 0.5 * (lighter * slip**2 + mass * given.velocity**2)
     lost = replace(normal, value=normal.value + 0.5 * lighter * (slip**2 - last**2), scale=size)
     results = {
         "dissipated_energy": lost,
         "slip_energy": lost,
-        "impulse_ratio": Reading(drawn / (mass * (given.velocity + back)), NUMBER, scale=1.0),
+        "impulse_ratio": Reading(drawn / (mass * (given.velocity + back)), NUMBER, {"solver": digits}, scale=1.0),
         "rebound_tangential_velocity": Reading(
             (given.tangential_velocity or 0.0) - drawn / mass, VELOCITY, scale=speed
         ),

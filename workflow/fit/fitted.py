@@ -190,17 +190,17 @@ class Fitted:
         points = last.held if last.held.size else last.points
         points = points[np.isin(points, self.solution.problem.kept)]
         forces = (self.curve.forces - self.baseline)[points]
-        first = min(max(0, int(np.argmin(forces)) - 7), max(0, points.size - 15))
-        points, forces = points[first : first + 15], forces[first : first + 15]
-        x = np.linspace(-1.0, 1.0, points.size)
+        width = 15
+        first = min(max(0, int(np.argmin(forces)) - width // 2), max(0, points.size - width))
+        points, forces = points[first : first + width], forces[first : first + width]
+        parabola = np.vander(np.linspace(-1.0, 1.0, points.size), 3, increasing=True)
         best, offset = self.solution.best, OFFSETS[RETRACT]
         offset = offset if offset in self.values else OFFSETS[APPROACH]
         (noise,) = noises([(best.noise.share, best.noise.memory)], [points])
-        rows = noise.whitened(np.column_stack([np.ones_like(x), x, x**2, forces]))
-        powers, *_ = np.linalg.lstsq(rows[:, :3], rows[:, 3])
-        parabola = np.vander(x, 3, increasing=True)
+        rows = noise.whitened(np.column_stack([parabola, forces]))
+        powers, *_ = np.linalg.lstsq(rows[:, :-1], rows[:, -1])
         lowest = parabola[int(np.argmin(parabola @ powers))]
-        variance = best.deviation**2 * float(lowest @ np.linalg.solve(rows[:, :3].T @ rows[:, :3], lowest))
+        variance = best.deviation**2 * float(lowest @ np.linalg.solve(rows[:, :-1].T @ rows[:, :-1], lowest))
         variance += self.deviation(offset) ** 2
         return -float(lowest @ powers), TWO_SIDED * math.sqrt(variance)
 

@@ -116,8 +116,8 @@ class Frictional(Independent):
         coefficient: coefficient of friction μ.
     """
 
-    closed_forms = ("pressed", "along")
-    exact = closed_forms
+    closed_forms = ("pressed", "along", "oblique")
+    exact = ("pressed", "along")
 
     ratio: float = 1.0
     coefficient: float = 0.0

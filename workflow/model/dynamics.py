@@ -123,7 +123,7 @@ def motion_of(
     if isinstance(scene.experiment, Impact):
         # A thousandth of the time to the deepest displacement at the impact velocity, less below the tolerance.
         step = 1e-3 * min(1.0, math.sqrt(tolerance / MOVING_TOLERANCE)) * largest / scene.experiment.velocity
-        step *= 0.5 if scene.is_oblique else 1.0  # a spring is drawn along from the timestep in which it touches
+        step /= 1.0 + 2.0 * scene.is_oblique  # a spring is drawn along from the timestep in which it touches
     slowest = contact / moving if plate else scene.bulk_stiffness / bodies.mass
     settle_time = 2.0 * math.pi / math.sqrt(slowest)
     settling, settling_step = damping, step

@@ -45,6 +45,7 @@ from contact1d.workflow.units import (
     LINE_PRESSURE,
     MASS,
     MEAN_PRESSURE,
+    NUMBER,
     SI,
     TIME,
     VELOCITY,
@@ -123,6 +124,8 @@ def _entries(scene: Scene, outcome: Outcome, shown: Container[str], scales: Scal
         if name not in shown:
             for part in (entry, entry.get("si", {})):
                 part.update({key: None for key, number in part.items() if key == "value" or number == math.inf})
+    if scene.is_oblique and not scene.slip_velocity:  # a ratio of 0 to 0
+        entries["tangential_restitution"] = {"value": None, "uncertainty": None, "unit": NUMBER}
     return entries
 
 

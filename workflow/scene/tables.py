@@ -108,6 +108,11 @@ class Elastic(Table):
         """Tangential compliance (2 − ν)/4G = (2 − ν)(1 + ν)/2E [1/Pa]."""
         return (2.0 - self.poisson_ratio) * (1.0 + self.poisson_ratio) / (2.0 * self.youngs_modulus)
 
+    @property
+    def coupling_compliance(self) -> float:
+        """Compliance (1 − 2ν)/4G = (1 + ν)(1 − 2ν)/2E [1/Pa] that couples normal and tangential displacements."""
+        return (1.0 + self.poisson_ratio) * (1.0 - 2.0 * self.poisson_ratio) / (2.0 * self.youngs_modulus)
+
 
 class Material(Table):
     """Elasticity of the bodies; optionally the units of the model, or the surface energy that they follow from."""
@@ -156,6 +161,16 @@ class Material(Table):
         bodies = self.elastic.values()
         tangential = sum(body.tangential_compliance for body in bodies)
         return sum(body.compliance for body in bodies) / tangential if bodies else 1.0
+
+    def dundurs(self) -> float:
+        """Return Dundurs' β = Σ ±(1 + ν)(1 − 2ν)/2E over Σ (1 − ν²)/E, positive of a softer upper body.
+
+        0 of elastically similar bodies, whose normal and tangential displacements are not coupled, and if only E* is
+        known.
+        """
+        signs = {"upper": 1.0, "lower": -1.0}
+        coupled = sum(signs[name] * body.coupling_compliance for name, body in self.elastic.items())
+        return coupled * self.effective_modulus() if self.elastic else 0.0
 
     def layer_stiffness(self, reduction: Reduction) -> float:
         """Return the stiffness per length [Pa] of the layer of both chains.
