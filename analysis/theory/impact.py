@@ -1,15 +1,24 @@
-"""Oblique impact without slip: the contact point of an elastic body of revolution that sticks to a plane.
+"""Impact of an elastic body of revolution without slip, and of a Kelvin-Voigt body, on a plane.
 
-With the force F = d^p of z ~ r^n, p = 1 + 1/n, at unit mass and velocity, and G*/E* taken into the tangential force T,
-springs that touch are drawn along by u, each from where the body was then:
+With the force F = d^p of z ~ r^n, p = 1 + 1/n, at unit mass and velocity. Without slip springs that touch are drawn
+along by u, each from where the body was then, with G*/E* in chi and T the tangential force over G*/E*:
 
     d'' = -d^p,    u'' = -2 chi T,    T = int p d^(1/n) du (loading),    T = p d^(1/n) u - B(d) (unloading)
 
 A spring that leaves takes its energy along; B(d) is that of the loading at the same d, passed at the mirrored time
-(N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101, of a sphere with slip).
+(N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101, of a sphere with slip). Springs with dashpots of a retardation
+time tau push with u + tau u' (V. L. Popov, M. Hess, Method of Dimensionality Reduction, 2015, chapter 7):
+
+    d'' = -(d^p + tau p d^(p-1) d') (approach),    d'' = -(d + tau d')^p (rebound),    until d + tau d' = 0
 """
 
 from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+Rates = Callable[[float, Any], list[float]]
 
 
 def full_stick(exponent: float, chi: float) -> float:
@@ -19,32 +28,84 @@ def full_stick(exponent: float, chi: float) -> float:
         exponent: n of z ~ r^n, 1 or more.
         chi: (G*/E*) (1 + m l^2/I)/2, of the mass m, lever arm l and moment of inertia I.
     """
-    from scipy.integrate import solve_ivp
-
-    power, exact = 1.0 + 1.0 / exponent, dict.fromkeys(("rtol", "atol"), 1e-10)
+    power = 1.0 + 1.0 / exponent
 
     def stiffness(d: float) -> float:
         """Return p d^(1/n), dT/du, at a displacement d >= 0; 0 below."""
         return float(power * max(d, 0.0) ** (power - 1.0))
 
-    def loading(_: float, y: list[float]) -> list[float]:
+    def loading(_: float, y: Any) -> list[float]:
         """Return the rates of (d, d', u, u', T)."""
-        d, velocity, _, slip, force = y
-        return [velocity, -(max(d, 0.0) ** power), slip, -2.0 * chi * force, stiffness(d) * slip]
+        return [y[1], -(max(y[0], 0.0) ** power), y[3], -2.0 * chi * y[-1], stiffness(y[0]) * y[3]]
 
-    def rests(_: float, y: list[float]) -> float:
-        """Return d', 0 where the body turns."""
-        return y[1]
-
-    rests.terminal = True  # type: ignore[attr-defined]
-    pressed = solve_ivp(
-        loading, (0.0, 2.0 * power), [0.0, 1.0, 0.0, 1.0, 0.0], events=rests, dense_output=True, **exact
-    )
+    pressed = _motion(loading, [0.0, 1.0, 0.0, 1.0, 0.0], lambda y: y[1])
     last = float(pressed.t[-1])
 
-    def unloading(time: float, y: list[float]) -> list[float]:
+    def unloading(time: float, y: Any) -> list[float]:
         """Return the rates of (u, u')."""
         d, _, place, _, force = pressed.sol(last - time)
         return [y[1], -2.0 * chi * (force + stiffness(d) * (y[0] - place))]
 
-    return float(solve_ivp(unloading, (0.0, last), pressed.y[[2, 3], -1], **exact).y[1, -1])
+    return float(_motion(unloading, pressed.y[[2, 3], -1], lambda _: 1.0, last).y[1, -1])
+
+
+def restitution(exponent: float, time: float) -> float:
+    """Return v'/v of a Kelvin-Voigt body z ~ r^n after an impact, falling from 1 to 0 with a rising retardation time.
+
+    Args:
+        exponent: n, 1 or more.
+        time: retardation time > 0, in the unit of `unit_time`.
+    """
+    power = 1.0 + 1.0 / exponent
+
+    def approach(_: float, y: Any) -> list[float]:
+        """Return the rates of (d, d')."""
+        d = max(y[0], 0.0)
+        return [y[1], -(d**power) - time * power * d ** (power - 1.0) * y[1]]
+
+    def rebound(_: float, y: Any) -> list[float]:
+        """Return the rates of (d, d')."""
+        return [y[1], -(max(y[0] + time * y[1], 0.0) ** power)]
+
+    deepest = _motion(approach, [0.0, 1.0], lambda y: y[1]).y[0, -1]
+    return -float(_motion(rebound, [deepest, 0.0], lambda y: y[0] + time * y[1]).y[1, -1])
+
+
+@cache
+def retardation(exponent: float, wanted: float) -> float:
+    """Return the retardation time, in the unit of `unit_time`, of a Kelvin-Voigt body z ~ r^n with this restitution.
+
+    Args:
+        exponent: n, 1 or more.
+        wanted: v'/v, greater than 0 and less than 1.
+    """
+    from scipy.optimize import brentq
+
+    ends = 0.5**2 * (1.0 - wanted), 1.0 / wanted**2
+    return float(brentq(lambda time: restitution(exponent, time) - wanted, *ends))
+
+
+def unit_time(exponent: float, force: float, mass: float, velocity: float) -> float:
+    """Return the time D/v [time], D the displacement [length] where F(D) D = m v^2.
+
+    Args:
+        exponent: n of z ~ r^n.
+        force: F at the displacement 1 [force].
+        mass: m of the body [mass].
+        velocity: v of the impact [length/time].
+    """
+    return float((mass * velocity**2 / force) ** (1.0 / (2.0 + 1.0 / exponent)) / velocity)
+
+
+def _motion(rates: Rates, start: Sequence[float], ends: Callable[[Any], float], time: float = 1e9) -> Any:
+    """Return scipy's solution from `start` until `ends`, a function of the state, is 0, or until a time."""
+    from scipy.integrate import solve_ivp
+
+    def event(_: float, y: Any) -> float:
+        """Return what is 0 at the end."""
+        return ends(y)
+
+    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+    return solve_ivp(
+        rates, (0.0, time), start, "DOP853", events=event, dense_output=True, **dict.fromkeys(("rtol", "atol"), 1e-11)
+    )

@@ -27,12 +27,13 @@ from contact1d.workflow.continuation.trace import Trace
 from contact1d.workflow.deck.steps import Fly, Phase, launch
 from contact1d.workflow.experiments.experiment import Scripted, finer_spacing
 from contact1d.workflow.experiments.history import contact_time
+from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.laws.path import Array, Path
 from contact1d.workflow.model.free import FLIGHT, impact, stretch
 from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Friction, Impact, Plate, Scene
-from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER, SPIN, VELOCITY
+from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER, SPIN, TIME, VELOCITY
 
 
 class ImpactExperiment(Scripted[Impact]):
@@ -73,6 +74,9 @@ class ImpactExperiment(Scripted[Impact]):
             "peak_contact_radius": Reading(widest, LENGTH),
         }
         results |= {"contact_time": contact_time(trace)} if parted else {}
+        if scene.viscoelasticity and scene.viscoelasticity.restitution:
+            lag = scene.relaxation.retardation_time or 0.0
+            results["retardation_time"] = Reading(lag, TIME, {"solver": ROUND_OFF * lag}, prescribed=True)
         return results | (_along(trace, scene, results["dissipated_energy"]) if scene.is_oblique else {})
 
     def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:

@@ -51,7 +51,7 @@ class Relaxing(Independent):
 
         Equal arguments give the same instance.
         """
-        law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.the(Viscoelasticity))
+        law: Self = on_plane(cls, profile, scene.bodies.spacing, scene.bulk_stiffness, scene.relaxation)
         return law
 
     @classmethod
@@ -60,21 +60,21 @@ class Relaxing(Independent):
 
         Empty of a body with dashpots.
         """
-        return tuple((term.share, term.time) for term in scene.the(Viscoelasticity).terms)
+        return tuple((term.share, term.time) for term in scene.relaxation.terms)
 
     @classmethod
     def shortest_time(cls, scene: Scene) -> float:
         """Return the shortest relaxation time [TU] of a scene's Prony series, or its retardation time where it has
         dashpots.
         """
-        return scene.the(Viscoelasticity).shortest_time
+        return scene.relaxation.shortest_time
 
     @classmethod
     def jumps(cls, scene: Scene) -> bool:
         """Return whether the scene has a retardation time: dashpots without a spring in series, whose force jumps with
         velocity.
         """
-        return scene.the(Viscoelasticity).resists_jumps
+        return scene.relaxation.resists_jumps
 
     def untouched_radius(self, displacement: float) -> float:
         """Return the contact radius [LU] of the undeformed profile at a displacement [LU], as in a first loading.

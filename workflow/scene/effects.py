@@ -10,7 +10,7 @@ import math
 from collections.abc import Mapping
 from typing import Annotated, ClassVar, Literal
 
-from annotated_types import Le
+from annotated_types import Le, Lt
 from pydantic import AfterValidator, Field
 from pydantic_core import PydanticCustomError
 
@@ -209,7 +209,12 @@ class Viscoelasticity(Effect):
 
     is_modelled = True
 
-    one_of = ((("terms", "retardation_time"), "give the terms of a Prony series, or one retardation_time; not both"),)
+    one_of = (
+        (
+            ("terms", "retardation_time", "restitution"),
+            "give the terms of a Prony series or one retardation_time, or in an impact the restitution; not several",
+        ),
+    )
     how = "[viscoelasticity] with terms = [{ share, time }, …]"
     excludes = {
         "adhesion": "what opens the edge of such a contact depends on all that came before, which no rule for the edge "
@@ -226,6 +231,10 @@ class Viscoelasticity(Effect):
     """in place of terms, for a Kelvin-Voigt body: retardation time T of a dashpot parallel to each spring, whose force
     is proportional to u + T u′, u its compression
     """
+    restitution: Annotated[float, POSITIVE, Lt(1), DIMENSIONLESS] | None = None
+    """in place of the retardation_time, in an impact of a parabola, a cone or a power: normal coefficient of
+    restitution, at the velocity and mass of the scene, from which the retardation time is computed
+    """
 
     @property
     def terms(self) -> tuple[Term, ...]:
@@ -240,7 +249,7 @@ class Viscoelasticity(Effect):
     @property
     def resists_jumps(self) -> bool:
         """Whether a jump of the displacement takes an unbounded force: with a retardation time (Kelvin-Voigt)."""
-        return self.retardation_time is not None
+        return not self.terms
 
     @property
     def shortest_time(self) -> float:

@@ -264,6 +264,9 @@ RULES: tuple[Rule, ...] = (
      "missing, needed by an impact: it has the mass of the body", "add [plate] with mass"),
     ("plate.mass", "experiment.kind=impact plate.mass=auto",
      "must be given in an impact (MU): it is that of the body", "give its mass"),
+    ("viscoelasticity.restitution", "!experiment.kind=impact", "only in an impact", "give terms or a retardation_time"),
+    ("viscoelasticity.restitution", "experiment.kind=impact !bodies.profile.kind=parabola !bodies.profile.kind=cone "
+     "!bodies.profile.kind=power", "only of a parabola, a cone or a power", "give a retardation_time"),
     ("friction", "experiment.kind=impact !oblique", f"not in an impact at a right angle: {UNMOVED}",
      "remove it, or give experiment.tangential_velocity or experiment.spin"),
     ("friction", "oblique", "missing, needed by an impact with tangential velocity or spin",
@@ -273,7 +276,7 @@ RULES: tuple[Rule, ...] = (
       for name, bodies in (("adhesion", "an adhesive edge"), ("viscoelasticity", "a body that relaxes"))),
     ("plate.damping", "oblique !plate.damping=auto", "not with a tangential velocity or a spin: the body is free",
      "remove it"),
-    ("plate.lever_arm", "oblique plate.lever_arm=auto !bodies.profile.kind=parabola|bodies.profile.kind=circle",
+    ("plate.lever_arm", "oblique plate.lever_arm=auto !bodies.profile.kind=parabola !bodies.profile.kind=circle",
      "must be given for this profile (LU): the distance of the contact point from the centre of mass", "give it"),
     *((key, f"!oblique !{key}=auto", "only in an impact with tangential velocity or spin",
        "remove it, or give experiment.tangential_velocity or experiment.spin")

@@ -86,6 +86,11 @@ class Shape(Table):
         return None
 
     @property
+    def degree(self) -> float | None:
+        """Exponent n of a body z ∝ |x|ⁿ: 2 of a parabola, 1 of a cone, that of a power; else None."""
+        return None
+
+    @property
     def ball_radius(self) -> float | None:
         """Radius [LU] of the ball that the upper body is: of a parabola its own radius, of a circle; else None."""
         return None
@@ -179,6 +184,11 @@ class Parabola(Shape):
     def ball_radius(self) -> float:
         """The radius R₁ [LU] of the upper body alone."""
         return self.radius
+
+    @property
+    def degree(self) -> float:
+        """The exponent 2 of z ∝ x²."""
+        return 2.0
 
     @property
     def steepest(self) -> Self:
@@ -322,6 +332,11 @@ class Cone(Flanked):
         """Return the height g = (π/2) s |x| [LU] after the MDR transform at positions x [LU]; same shape."""
         return 0.5 * math.pi * self.rise * abs(x)
 
+    @property
+    def degree(self) -> float:
+        """The exponent 1 of z ∝ |x|."""
+        return 1.0
+
 
 class Level(Shape):
     """z = 0 wherever there is a body."""
@@ -369,6 +384,11 @@ class Power(Shape):
     """radius a at which the height is given"""
     height_there: Length = Field(alias="height")
     """height h at that radius"""
+
+    @property
+    def degree(self) -> float:
+        """The exponent n of z ∝ |x|ⁿ."""
+        return self.exponent
 
     def height(self, x: Array) -> Array:
         """Return the height z = h (|x|/a)ⁿ [LU] at positions x [LU]; same shape."""

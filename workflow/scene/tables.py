@@ -457,6 +457,27 @@ class Tables(Table):
         return self.bulk_stiffness * (1.0 if self.material is None else self.material.tangential_share())
 
     @property
+    def relaxation(self) -> Viscoelasticity:
+        """[viscoelasticity], with the retardation time [TU] in place of a `restitution`; StopIteration without any."""
+        import numpy as np  # a scene can do without it
+
+        from contact1d.analysis.theory.impact import retardation, unit_time
+
+        effect, impact, degree = self.the(Viscoelasticity), self.experiment, self.bodies.profile.degree
+        if effect.restitution is None or degree is None:
+            return effect
+        plate = self.the(Plate)
+        assert isinstance(impact, Impact)
+        assert plate.mass != "auto"
+        # F = 2E* n/(n + 1) a d at a displacement d, here that of a contact radius of one spacing.
+        a, modulus = self.bodies.spacing, self.bulk_stiffness / self.bodies.spacing
+        d = float(self.bodies.profile.transformed(np.asarray([a]))[0])
+        force = 2.0 * modulus * degree / (degree + 1.0) * a * d / d ** (1.0 + 1.0 / degree)
+        unit = unit_time(degree, force, plate.mass, impact.velocity)
+        time = unit * retardation(degree, effect.restitution)
+        return effect.model_copy(update={"retardation_time": time, "restitution": None})
+
+    @property
     def is_oblique(self) -> bool:
         """Whether the scene is an impact with a tangential velocity or a spin."""
         return self.experiment.is_oblique

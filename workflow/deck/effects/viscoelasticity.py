@@ -5,7 +5,7 @@ Its force replaces that of the plane. Atoms keep the loading history, updated at
 
 from contact1d.workflow.deck.effects import Contribution, Stage, number
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Scene, Viscoelasticity
+from contact1d.workflow.scene import Scene
 
 
 def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
@@ -16,7 +16,7 @@ def viscoelasticity(scene: Scene, settings: Settings) -> Contribution:
     the fragments of springs with a parallel dashpot. Load steps that are timesteps of one run have their own durations,
     else each lasts a timestep of the motion.
     """
-    effect, rows = scene.the(Viscoelasticity), scene.is_stepped
+    effect, rows = scene.relaxation, scene.is_stepped
     fragments = ["elapsed_rows" if rows else "elapsed_steps"]
     variables = {"viscoelasticity_stiffness": number(settings.forces.plane_stiffness)}
     if not rows:
