@@ -124,6 +124,42 @@ def held_radius(profile: Profile) -> ContactRadius:
     return _of_edges(profile.x, profile.pressure, profile.pressure != 0.0, _held_edge)
 
 
+def within(profile: Profile, edge: float) -> Profile:
+    """Return the particles of a profile within an `edge` [LU] on both sides of x = 0, in new arrays.
+
+    Beyond either end there is one more without a load, a spacing away, since a contact may end in between.
+    """
+    inside = np.abs(profile.x) < edge
+    columns = (profile.z_lower, profile.z_upper, profile.pressure, profile.shear)
+    x = np.pad(profile.x[inside], 1, mode="reflect", reflect_type="odd")
+    return Profile(x, *(np.pad(column[inside], 1) for column in columns))
+
+
+def covers(profile: Profile, edge: float) -> bool:
+    """Return whether a contact, of a profile `within` the edge of a body, is pressed up to that `edge` [LU].
+
+    It is where both ends are, and the parabola through the last three pressures is not below 0 at the edge. False for
+    fewer than 3 particles.
+    """
+    p = profile.pressure[1:-1]
+    if p.size < PARABOLA_POINTS or not min(p[0], *p[-PARABOLA_POINTS:]) > 0.0:
+        return False
+    last = np.polyfit(profile.x[-PARABOLA_POINTS - 1 : -1] - edge, p[-PARABOLA_POINTS:], 2)
+    return bool(last[-1] >= 0.0)
+
+
+def ends_whole(profile: Profile, round_off: float) -> bool:
+    """Return whether both ends of a profile `within` the edge of a body carry whole cells.
+
+    They do where the last pressure is that of the parabola of the three before, but for a share `round_off` of the
+    largest one. False for fewer than 4 particles, and where the first or the last pressure is 0.
+    """
+    p = profile.pressure[1:-1]
+    if p.size <= PARABOLA_POINTS or 0.0 in (p[0], p[-1]):
+        return False
+    return bool(abs(np.diff(p[-PARABOLA_POINTS - 1 :], PARABOLA_POINTS)[0]) <= round_off * np.abs(p).max())
+
+
 def whole_cells(profile: Profile, radius: ContactRadius) -> Array:
     """Return the pressures, (n,) [FU/LU], with that of the outermost loaded particle on each side as of a whole cell.
 

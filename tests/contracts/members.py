@@ -57,6 +57,7 @@ PROFILES: dict[str, dict[str, Any]] = {
     "truncated_parabola": {"radius": length(500.0), "land_radius": length(8.0)},
     "rounded_punch": {"radius": length(5.0), "edge_radius": length(200.0)},
     "hyperboloid": {"slope": SLOPE, "tip_radius": length(300.0)},
+    "capped_punch": {"radius": length(12.0), "cap_radius": length(500.0)},
 }
 """By their kind; under LOAD on a plane the contact radius is 10 to 20 LU."""
 

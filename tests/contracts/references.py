@@ -76,20 +76,12 @@ def largest(found: Numbers) -> Numbers:
     return {names.get(name, name): value for name, value in found.items() if name != "displacement"}
 
 
-def edge(contact: Contact, force: float) -> tuple[float, float]:
-    """a and d under a force."""
-    if math.isfinite(contact.body.end):
-        return PUNCH, force / (2.0 * contact.modulus * PUNCH)
-    a = contact.pressed_radius(force, GUESS)
-    return a, contact.displacement(a)
-
-
 def elastic(one: Combination, work: float = 0.0) -> Numbers:
     """Galin's and Sneddon's contact, and JKR's of any body."""
     contact = Contact(BODIES[one.profile], MODULUS, work)
-    deep = (PUNCH if one.profile == "flat_punch" else contact.radius_at(DEPTH, GUESS)), DEPTH
+    deep = contact.radius_at(DEPTH, GUESS), DEPTH
     if one.experiment in ("load", "hold a force"):
-        return state(contact, *edge(contact, LOAD))
+        return state(contact, *contact.under(LOAD, GUESS))
     if one.experiment == "hold":
         return state(contact, *deep)
     if one.experiment.startswith("path"):
@@ -98,7 +90,7 @@ def elastic(one: Combination, work: float = 0.0) -> Numbers:
         gone = {} if work else {"dissipated_energy": 0.0, "contact_time": 1.0 + 1.0 + 2.0 / 3.0}
         return {"peak_force": contact.force_at(*deep)} | gone
     if one.experiment == "history of a force":
-        return {"peak_displacement": edge(contact, LOAD)[1], "dissipated_energy": 0.0, "contact_time": END}
+        return {"peak_displacement": contact.under(LOAD, GUESS)[1], "dissipated_energy": 0.0, "contact_time": END}
     if one.experiment == "impact":
         return bounced(contact)
     found = pulled_off(contact) if one.experiment.startswith("pull_off") else {}
@@ -107,18 +99,18 @@ def elastic(one: Combination, work: float = 0.0) -> Numbers:
 
 def bounced(contact: Contact) -> Numbers:
     """Energy balance of an impact: ½ m v² = E(a) − E at first contact, less what is lost under fixed grips."""
-    energy, punch = 0.5 * MASS * SPEED**2, math.isfinite(contact.body.end)
-    if punch:
-        d = math.sqrt(energy / contact.modulus / PUNCH)
-        a, lost = PUNCH, MASS * SPEED**2 if contact.work else 0.0
-    elif contact.work:
+    energy, touch, start, lost = 0.5 * MASS * SPEED**2, 1e-3, 0.0, 0.0
+    if contact.work:
         touch = contact.touch_radius(GUESS)
         start = contact.energy(touch, 0.0)
-        a = brentq(lambda a: contact.energy(a) - start - energy, touch, 3.0 * GUESS, xtol=1e-12)
-        d, lost = contact.displacement(a), contact.energy(contact.fixed_grips(GUESS)) - start
+        lost = contact.energy(contact.fixed_grips(GUESS)) - start
+    a = min(3.0 * GUESS, contact.body.end)
+    least = max(contact.displacement(a), 0.0)
+    if contact.energy(a, least) < start + energy:  # up to the end of a body
+        d = brentq(lambda d: contact.energy(a, d) - start - energy, least, GUESS, xtol=1e-12)
     else:
-        a = brentq(lambda a: contact.energy(a) - energy, 1e-3, 3.0 * GUESS, xtol=1e-12)
-        d, lost = contact.displacement(a), 0.0
+        a = brentq(lambda a: contact.energy(a) - start - energy, touch, a, xtol=1e-12)
+        d = contact.displacement(a)
     found = {"peak_force": contact.force_at(a, d), "peak_displacement": d, "peak_contact_radius": a}
     lost = min(lost, energy)
     return found | {"restitution": math.sqrt(1.0 - lost / energy), "dissipated_energy": lost}
@@ -127,9 +119,9 @@ def bounced(contact: Contact) -> Numbers:
 def pulled_off(contact: Contact) -> Numbers:
     """F_A, a_cr, a₀, the work from there to separation, and the pressure there."""
     found = marks(contact, GUESS)
-    if math.isfinite(contact.body.end):
+    if contact.body.flat:
         return found
-    free, d = edge(contact, 0.0)
+    free, d = contact.under(0.0, GUESS)
     middle = state(contact, free, d)
     return found | ({"central_pressure": middle["central_pressure"]} if "central_pressure" in middle else {})
 
@@ -206,7 +198,7 @@ def kelvin_voigt(one: Combination) -> Numbers:
 def friction(one: Combination) -> Numbers:
     """Cattaneo, Mindlin, Jaeger and Ciavarella; after a turn by Masing's rule."""
     contact = Contact(BODIES[one.profile], MODULUS)
-    a = edge(contact, LOAD)[0]
+    a = contact.under(LOAD, GUESS)[0]
     if one.profile == "flat_punch":
         return {"contact_radius": a}
     found = {"contact_radius": a, "contact_stiffness": 2.0 * MODULUS * a}

@@ -36,6 +36,9 @@ FORMULAS: dict[str, tuple[dict[str, Any], Function, Function, float, float | Non
     ),
     "cone": ({"slope": 0.3}, lambda x: 0.3 * np.abs(x), lambda r: 0.3, math.inf, None),
     "flat_punch": ({"radius": 50.0}, lambda x: 0.0 * x, lambda r: 0.0, 50.0, None),
+    "capped_punch": (
+        {"radius": 50.0, "cap_radius": 30.0}, lambda x: x**2 / 60.0, lambda r: r / 30.0, 50.0, None,
+    ),
     "power": (
         {"exponent": 1.5, "radius": 20.0, "height": 2.0}, lambda x: 2.0 * np.abs(x / 20.0) ** 1.5,
         lambda r: 3.0 * math.sqrt(r / 20.0) / 20.0, math.inf, None,

@@ -38,10 +38,14 @@ TABLES: dict[str, dict[str, Any]] = {
     "FLAT": {"bodies": {"particles": 32, "profile": {"kind": "flat"}, "periodic": True}},
     "AUTO": {"bodies": {"spacing": "auto", "bulk_stiffness": "auto", "lower": "rigid_plane"}, "interaction": None,
              "material": E_STAR | UNITS},
+    "CAPPED": {"bodies": {"lower": "rigid_plane",
+                          "profile": {"kind": "capped_punch", "radius": 10.0, "cap_radius": 90.0}},
+               "interaction": None},
     "CONE": {"bodies": {"profile": {"kind": "cone", "slope": 0.1}}},
 }  # fmt: skip
 """What a word below changes: tables by name; None takes one away, and keys of [bodies] and [experiment] are added."""
 BOTH = {"upper": STEEL, "lower": RUBBER}
+HISTORY = {"kind": "history", "displacement": [[0.0, 0.0], [1.0, 1.0]]}
 
 
 def changed(words: str, more: dict[str, Any]) -> dict[str, Any]:
@@ -128,6 +132,17 @@ RULES: list[tuple[str, dict[str, Any], str]] = [
     ("", {"bodies.profile": {"kind": "flat_punch", "radius": 10.0}, "bodies.particles": 20}, ""),
     ("", {"bodies.profile": {"kind": "flat_punch", "radius": 10.0}, "bodies.particles": 21}, "bodies.particles"),
     ("", {"bodies.profile": {"kind": "flat_punch", "radius": 1.0}}, "bodies.profile.radius"),
+    ("LOAD CAPPED", {}, ""),
+    ("LOAD CAPPED", {"bodies.particles": 20}, ""),
+    ("LOAD CAPPED", {"bodies.spacing": 0.8}, "bodies.profile.radius"),
+    ("LOAD CAPPED", {"bodies.spacing": 10.0}, "bodies.profile.radius"),
+    ("LOAD CAPPED NEIGHBOURS", {}, "neighbours"),
+    ("CAPPED", {"experiment": HISTORY, "viscoelasticity": {"retardation_time": 1.0}}, "viscoelasticity"),
+    ("CAPPED TANGENTIAL FRICTION", {}, "friction"),
+    ("PULL_OFF CAPPED ADHESION", {}, ""),
+    ("PULL_OFF CAPPED ADHESION", {"adhesion.range": 0.1}, "adhesion.range"),
+    ("CAPPED", {"bodies.lower": "particles", "interaction": BASE["interaction"]}, "bodies.lower"),
+    ("CAPPED", {"experiment": {"kind": "impact", "velocity": 1.0}, "plate": {"mass": 1.0}}, "bodies.profile.kind"),
     # The material: one elasticity, and one way to the units.
     ("", {"material": BOTH | {"length_unit": 1e-9}}, ""),
     ("", {"material": E_STAR | UNITS, "bodies.bulk_stiffness": "auto"}, ""),

@@ -20,6 +20,7 @@ RADII = np.linspace(0.0, 60.0, 121)
 SHARP: dict[str, dict[str, Any]] = {
     "cone": {"kind": "cone", "slope": 0.02},
     "punch": {"kind": "flat_punch", "radius": 16.0},
+    "capped": {"kind": "capped_punch", "radius": 16.0, "cap_radius": 1000.0},
     "worn": {"kind": "table", "r": RADII.tolist(), "z": np.maximum(0.0, (RADII**2 - FLAT**2) / (2.0 * R)).tolist()},
 }
 

@@ -129,15 +129,15 @@ def state(contact: Contact, a: float, d: float) -> Numbers:
 
 def marks(contact: Contact, guess: float) -> Numbers:
     """F_A and the radii; separation's work, from the largest contact without a load to fixed grips."""
-    if math.isfinite(contact.body.end):
+    if contact.body.flat:
         a = contact.body.end
         force = -contact.force_at(a, contact.displacement(a))
         return {"adhesion_force": force, "critical_radius": a, "zero_load_radius": a,
                 "work_of_separation": force**2 / (4.0 * contact.modulus * a)}  # fmt: skip
-    critical, rest = contact.critical(guess), contact.pressed_radius(0.0, guess)
+    critical, (rest, depth) = contact.critical(guess), contact.under(0.0, guess)
     return {
         "adhesion_force": -contact.force(critical), "critical_radius": critical, "zero_load_radius": rest,
-        "work_of_separation": contact.energy(contact.fixed_grips(guess)) - contact.energy(rest),
+        "work_of_separation": contact.energy(contact.fixed_grips(guess)) - contact.energy(rest, depth),
         "adhesion_energy": math.pi * rest**2 * contact.work,
     }  # fmt: skip
 

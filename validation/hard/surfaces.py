@@ -38,8 +38,8 @@ class Surface:
 
     @property
     def punch(self) -> bool:
-        """Whether there is a flank."""
-        return math.isfinite(self.body.end)
+        """Whether it is a flat punch."""
+        return self.body.flat
 
     @property
     def power(self) -> Power | Flat:
@@ -94,7 +94,7 @@ def power(one: Power | Flat, radius: float) -> Surface:
 
 def _body(
     kind: str, radius: float = 0.0, slope: float = 0.0, height: float = 0.0, exponent: float = 2.0,
-    tip_radius: float = 0.0, land_radius: float = 0.0, edge_radius: float = 0.0,
+    tip_radius: float = 0.0, land_radius: float = 0.0, edge_radius: float = 0.0, cap_radius: float = 0.0,
 ) -> Body:  # fmt: skip
     b = tip_radius * slope
     match kind:
@@ -112,6 +112,8 @@ def _body(
             return Body(lambda _: slope, lambda _: 0.0)
         case "flat_punch":
             return Body(lambda _: 0.0, lambda _: 0.0, end=radius)
+        case "capped_punch":
+            return Body(lambda r: r / cap_radius, lambda _: 1.0 / cap_radius, end=radius)
         case "circle" | "ellipsoid":
             ratio = height / radius if height else 1.0
             return Body(

@@ -40,7 +40,7 @@ class Body:
         bend: f''(r) [1/length] between kinks; at a kink that of the outer side.
         kinks: b_k > 0 [length], rising, where slope or bend jump.
         jumps: J_k of the slope there [1]; 0 where only the bend jumps.
-        end: radius at which there is a flank (a flat punch), inf where there is none [length].
+        end: radius at which there is a flank (a punch), inf where there is none [length].
         limit: radius below which contacts are searched for, as of a sphere [length].
     """
 
@@ -50,6 +50,16 @@ class Body:
     jumps: tuple[float, ...] = ()
     end: float = math.inf
     limit: float = math.inf
+
+    @property
+    def widest(self) -> float:
+        """Radius below which contacts are searched for [length]."""
+        return min(self.limit, self.end)
+
+    @property
+    def flat(self) -> bool:
+        """Whether it is a flat punch, always in contact up to its end."""
+        return math.isfinite(self.end) and self.slope(self.end) == 0.0
 
     def corners(self, low: float, high: float) -> list[float]:
         """Two radii and the kinks between them [length]."""
@@ -120,18 +130,25 @@ class Contact:
         """The largest a with F(a) = force, from beyond [length]."""
         return self._down(lambda a: self.force(a) - force, guess)
 
+    def under(self, force: float, guess: float) -> tuple[float, float]:
+        """a and d of the contact with the largest a that carries a force; up to the end of a body d follows from it."""
+        a = self.pressed_radius(force, guess)
+        if a == self.body.end:
+            return a, (0.5 * force / self.modulus + self.body.area(a)) / a
+        return a, self.displacement(a)
+
     def radius_at(self, displacement: float, guess: float) -> float:
         """The largest a with d(a) = displacement [length]."""
         return self._down(lambda a: self.displacement(a) - displacement, guess)
 
     def _down(self, function: Function, guess: float) -> float:
-        """The largest root of a function that is positive far outside."""
-        if math.isfinite(self.body.end):
+        """The largest root of a function that is positive far outside, or the end of a body where it is below 0."""
+        if self.body.flat or (math.isfinite(self.body.end) and function(self.body.end) <= 0.0):
             return self.body.end
-        high = guess
+        high = min(guess, self.body.end)
         while function(high) <= 0.0:
             high *= 1.5
-            if high > self.body.limit:
+            if high > self.body.widest:
                 raise ValueError("the contact would cover the body")
         # A dip beside a limit point may be narrower than the grid.
         for closer in (False, self.work > 0.0):
@@ -143,7 +160,7 @@ class Contact:
         raise ValueError("no contact carries so little")
 
     def _grid(self, guess: float) -> list[float]:
-        low, high = guess * 10.0**-DECADES, min(guess * 10.0 ** (0.5 * DECADES), self.body.limit)
+        low, high = guess * 10.0**-DECADES, min(guess * 10.0 ** (0.5 * DECADES), self.body.widest)
         points = []
         for start, stop in pairwise(self.body.corners(low, high)):
             count = max(SCAN, round(SCAN * math.log10(stop / start)))
@@ -151,8 +168,8 @@ class Contact:
         return [*points, high]
 
     def _turns(self, share: float, guess: float) -> list[float]:
-        """Radii at which a g' rises through share Delta_l: minima of d (1/2) or F (3/2)."""
-        if math.isfinite(self.body.end):
+        """Radii at which a g' rises through share Delta_l: minima of d (1/2) or F (3/2); the end, if it falls there."""
+        if self.body.flat:
             return [self.body.end]
 
         def excess(a: float) -> float:
@@ -169,6 +186,8 @@ class Contact:
                 found.append(root(excess, inside, outside))
             if outside < high and above < 0.0 < excess(beside(high, 1.0)):
                 found.append(high)
+        if math.isfinite(self.body.end) and excess(self.body.end) < 0.0:
+            found.append(self.body.end)
         return found
 
     def fixed_grips(self, guess: float) -> float:
@@ -185,8 +204,8 @@ class Contact:
         return min([least, *(a for a in self._turns(1.5, guess) if a > least)], key=self.force)
 
     def touch_radius(self, guess: float) -> float:
-        """a of the contact that forms at d = 0: the first at which d(a) rises to 0 [length]."""
-        if math.isfinite(self.body.end):
+        """a of the contact that forms at d = 0: the first at which d(a) rises to 0 [length], or the end of a body."""
+        if self.body.flat or (math.isfinite(self.body.end) and self.displacement(self.body.end) < 0.0):
             return self.body.end
         for low, high in pairwise(self._grid(guess)):
             if self.displacement(low) < 0.0 <= self.displacement(high):

@@ -190,7 +190,27 @@ def pressures_of(scene: Scene, outcome: Outcome) -> dict[str, BodyPressure]:
     if critical and critical.value and "critical" in radii:
         radii["critical"] = max(radius, critical.uncertainty / critical.value)
     given = {name: _pressure_share(scene, outcome, name) for name in outcome.profiles}
-    return body_pressures(scene, outcome.profiles, radii, sum(shares.values()), given)
+    moved = {name: _displacement_error(scene, outcome, name) for name in outcome.profiles}
+    return body_pressures(scene, outcome.profiles, radii, sum(shares.values()), given, moved)
+
+
+def _displacement_error(scene: Scene, outcome: Outcome, state: str) -> float:
+    """Return the error [LU] ≥ 0 of the displacement of a marked state but for uncertain inputs, with that of its force
+    over 2E*a, a the half-width of the body; 0 of a body without an edge.
+
+    Of a state that is no load step it is the largest one of all load steps.
+    """
+    if not scene.bodies.profile.has_edge:
+        return 0.0
+    index = [i for i, passed in enumerate(outcome.states) if passed is outcome.marked[state]] or slice(None)
+    stiffness = 2.0 * scene.bulk_stiffness / (scene.chains * scene.bodies.spacing) * scene.bodies.reach
+    rows = {"displacement": 1.0, "force": 1.0 / stiffness}
+    return sum(
+        float(np.max(np.broadcast_to(error, len(outcome.states))[index])) * factor
+        for name, factor in rows.items()
+        for source, error in outcome.rows.get(name, {}).items()
+        if source != "input"
+    )
 
 
 def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
@@ -215,14 +235,19 @@ def _pressure_share(scene: Scene, outcome: Outcome, state: str) -> float:
 def _pressure_size(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Quantity]:
     """Return {"pressure": c h(a)/a [FU/LU²]}, to which pressures are proportional, with the uncertainty 0.
 
+    Of a punch with a paraboloid as its end it is c (h(a) + d)/a, d the displacement, or h(a) where that is unknown.
+
     c is the stiffness of the layer per length, h the profile under the reduction, and a the first of "contact_radius",
     "largest_radius", "zero_load_radius" in the results. The proportion is exact of a power, with adhesion at F = 0. {}
-    without an a above 0, where h(a) is 0, and of a body with an edge.
+    without an a above 0, where h(a) is 0, and of a plane body.
     """
     radius = first_of(results, *RADII)
-    if radius is None or not radius.value > 0.0 or scene.bodies.profile.has_edge:
+    if radius is None or not radius.value > 0.0 or scene.bodies.profile.is_plane:
         return {}
     height = float(scene.bodies.height(np.asarray([radius.value]))[0])
+    if scene.bodies.profile.has_edge:
+        depth = first_of(results, "displacement", "peak_displacement")
+        height += max(scene.experiment.places(), default=height) if depth is None else depth.value
     layer = scene.bulk_stiffness / (scene.chains * scene.bodies.spacing)
     return {"pressure": Quantity(layer * height / radius.value, 0.0, MEAN_PRESSURE)} if height > 0.0 else {}
 

@@ -59,6 +59,11 @@ class LoadedState:
         return any(kink < self.radius.value for kink in shape.slope_jumps)
 
     @property
+    def is_full(self) -> bool:
+        """Whether the contact is as wide as a body with an edge that is not plane."""
+        return self.shape.has_edge and not self.shape.is_plane and self.radius.value == self.shape.reach
+
+    @property
     def is_uncoupled(self) -> bool:
         """Whether the lower body is a rigid plane and the scene has no springs between neighbours.
 
@@ -116,9 +121,11 @@ class LoadedState:
         """The line load just inside the edge less that just outside [FU/LU], compression positive; cached.
 
         It is the law's own where the law computes the edge; else 0, of a load that falls to 0 at its edge, or of an
-        interaction. None where only the particles show it: at the edge of a flat punch, and of JKR.
+        interaction. None where only the particles show it: at the edge of a punch, and of JKR.
         """
-        return self.zone.jump if self.zone else self.rule.jump
+        if self.zone:
+            return self.zone.jump
+        return None if self.is_full else self.rule.jump
 
     @cached_property
     def load(self) -> Array:
@@ -139,10 +146,10 @@ class LoadedState:
 
         For linear springs `heights` itself, else with the slope of the line load at the axis, or `heights` if they do
         not rise there. None where particles are coupled, or the lower body is no rigid plane; where the shape
-        has an edge, or is uncertain (a table or a scan); and where springs are not linear and fewer than 3 particles on
+        is plane, or uncertain (a table or a scan); and where springs are not linear and fewer than 3 particles on
         a side carry a load.
         """
-        if not self.is_uncoupled or self.shape.has_edge or self.shape.alternatives or self.shape.deviations:
+        if not self.is_uncoupled or self.shape.is_plane or self.shape.alternatives or self.shape.deviations:
             return None
         if self.is_elastic:
             return self.heights

@@ -102,6 +102,7 @@ def body_pressures(
     of_radius: Mapping[str, float],
     of_all: float,
     given: Mapping[str, float],
+    moved: Mapping[str, float],
 ) -> dict[str, BodyPressure]:
     """Return p(r) of the given states by name; {} where the run represents no axisymmetric body.
 
@@ -116,9 +117,10 @@ def body_pressures(
         of_all: sum of the relative uncertainties of all results, for the pressure under other springs; added to `doubt`
             of each pressure.
         given: relative uncertainty of the pressures of each state by the uncertain numbers of the scene.
+        moved: error of the displacement of each state [LU], which counts for a curved body in full contact.
 
     Raises:
-        KeyError: `of_radius` or `given` lacks a state in contact.
+        KeyError: `of_radius`, `given` or `moved` lacks a state in contact.
         ValueError: no radius can be read off a profile: too few particles, or tension where the law has none.
     """
     if not is_of_a_body(scene):
@@ -127,15 +129,15 @@ def body_pressures(
     for name, profile in profiles.items():
         if (radius := rule.of(profile)) and radius.value > 0.0:
             state = LoadedState(scene, profile, radius, rule)
-            share = of_radius[name] if state.is_elastic and not scene.bodies.profile.has_edge else of_all
+            share = of_radius[name] if state.is_elastic and not scene.bodies.profile.is_plane else of_all
             if law_of(scene).attracts(scene):
                 share = max(share, 5e-6)  # the error of the equations for an adhesive edge
-            if pressure := _pressure(state, share, given[name]):
+            if pressure := _pressure(state, share, given[name], moved[name]):
                 pressures[name] = replace(pressure, doubt=pressure.doubt + of_all)
     return pressures
 
 
-def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) -> BodyPressure | None:
+def _pressure(state: LoadedState, share: float, given: float, moved: float, most: int = 1000) -> BodyPressure | None:
     """Return p(r) [FU/LU²], compression positive, of the axisymmetric body from the line load of a state.
 
     With its uncertainty, integrals and stiffness; r goes from 0, or under a tip from the first particle off the axis,
@@ -146,6 +148,7 @@ def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) 
         state: the line load of the state.
         share: relative error of the results; it is multiplied by the change of p with the relative contact radius.
         given: relative error of p by the uncertain numbers of the scene.
+        moved: error of the displacement [LU], with which p changes in full contact as that of a flat punch.
         most: particles on a side that are used at most; of more, every second, third …
     """
     scene, x, zone = state.scene, state.x, state.zone
@@ -177,6 +180,8 @@ def _pressure(state: LoadedState, share: float, given: float, most: int = 1000) 
     resolved = [level for i, level in enumerate(levels) if within >= FEWEST * 2**i]
     # 2e-12 of the layer: round-off of positions, compared with the depth of the wall that carries them.
     error = spread + share * sensitivity + given * np.abs(p) + 2e-12 * state.layer
+    if state.is_full:
+        error += state.layer * moved / (np.pi * np.sqrt((fine.edge - r) * (fine.edge + r)))
     if zone:  # a layer acts as a jump, but for the particle that is in it
         error += zone.layer / (np.pi * np.sqrt(fine.edge**2 - r**2)) * (r > fine.edge - scene.bodies.spacing)
     results = {
@@ -228,12 +233,16 @@ def _with_discretisation(
 def _sum_error(state: LoadedState) -> float:
     """Return the largest error [FU] ≥ 0 of the sum over particles for ∫ q dx: Δ²/12 of each change of slope.
 
-    Δ is the distance of particles along the body (Euler, Maclaurin). 0 where the line load ends by a jump, known or
-    not.
+    Δ is the distance of particles along the body (Euler, Maclaurin). Where the line load ends by a jump, known or not,
+    it is 0, but of a curved body in full contact Δ²/24 of the slope at both edges.
     """
-    if state.jump != 0.0:
+    if state.is_full:
+        before, last = np.diff(state.load)[-2:]
+        bends = np.abs([2.0 * last - before])
+    elif state.jump != 0.0:
         return 0.0
-    bends = np.abs(np.convolve(state.load, (1.0, -2.0, 1.0)))
+    else:
+        bends = np.abs(np.convolve(state.load, (1.0, -2.0, 1.0)))
     return float(bends.sum()) * state.scene.bodies.spacing / state.image_ratio / 12.0
 
 

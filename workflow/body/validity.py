@@ -107,11 +107,11 @@ def _similarity(case: Case, limit: float = 0.1) -> Iterator[Check]:
 def _slope(case: Case, radius: float, limit: float = 0.1) -> Iterator[Check]:
     """Yield one check of the slope of the profile (dimensionless, not transformed) at a contact radius [LU].
 
-    Nothing of a body with an edge, which is plane there. Of two curved bodies it is the slope of the steeper one;
-    beyond the end of the body that at its end. The limit is a convention; the message is there also where it holds.
+    Nothing of a plane body. Of two curved bodies it is the slope of the steeper one; beyond the end of the body that at
+    its end. The limit is a convention; the message is there also where it holds.
     """
     profile = case.scene.bodies.profile.steepest
-    if profile.has_edge:  # it is plane at the edge
+    if profile.is_plane:
         return
     around = np.asarray([1.0 - 1e-6, 1.0]) * min(radius, profile.reach)
     low, high = profile.height(around)
@@ -198,9 +198,9 @@ def _yield(case: Case, outcome: Outcome, limit: float = 1.6) -> Iterator[Check]:
     """Yield one check of the largest pressure over the yield strength, dimensionless; a ball yields from `limit` on.
 
     The strength is that of the weaker body; the pressure is the largest one of the results, of the state of the largest
-    force, and in closed form of a preload, 0 without any of these. Of a cone and a flat punch the value is infinite,
-    and the check fails. Nothing where no yield strength is given, or the size of the units in SI is unknown. The
-    message is there also where the check holds.
+    force, and in closed form of a preload, 0 without any of these. Of a cone and a punch in full contact the value is
+    infinite, and the check fails. Nothing where no yield strength is given, or the size of the units in SI is unknown.
+    The message is there also where the check holds.
     """
     material, scales = case.scene.material, case.scales
     bodies = () if material is None else material.elastic.values()
@@ -216,7 +216,8 @@ def _yield(case: Case, outcome: Outcome, limit: float = 1.6) -> Iterator[Check]:
     pressure = max(pressures, default=0.0) * scales.factor(MEAN_PRESSURE)
     share, digits = pressure / strength, digits_apart(pressure, limit * strength, 4)
     reached = f"the largest pressure is {prefixed(pressure, 'Pa', digits)}"
-    if case.kind in SINGULAR:
+    shape, radii = case.scene.bodies.profile, (case.quantities[name].value for name in RADII if name in case.quantities)
+    if case.kind in SINGULAR or (shape.has_edge and max(radii, default=0.0) >= shape.reach):
         share, reached = math.inf, "a tip or an edge yields at once"
     message = (
         f"{reached}, and a smooth elastic ball yields from {limit:g} times the yield strength on, "

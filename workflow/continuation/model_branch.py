@@ -103,7 +103,7 @@ class ModelBranch:
         force that it passes; the first end is not among them.
         """
         near = 1e-6 * self.model.law.spacing  # the distance from a jump
-        jumps = np.asarray([jump + side for jump in self.model.jumps for side in (-near, near)])
+        jumps = np.asarray([jump + side for jump in self.model.jumps for side in (-near, near)] + [*self.model.corners])
         steps, step = np.arange(ends.size), np.diff(ends)
         passed = np.divide(
             jumps - ends[:-1, None], step[:, None], out=np.zeros((step.size, jumps.size)), where=step[:, None] != 0.0
@@ -204,7 +204,8 @@ class ModelBranch:
         Where the law knows the former, it is that, within `end` [LU] and the first of the falling `positions` [LU].
         Else it is the position of the largest tension, and where the curve is not smooth the best of `fine` ones
         between its neighbours, `zooms` times. A smooth curve is not refined. That of an interaction has the distance 0:
-        forces of the model are linear between the points of a grid, whose corners would move the maximum.
+        forces of the model are linear between the points of a grid, whose corners would move the maximum. Where the
+        curve has a corner there, it is shorter by the tolerance.
         """
         zero, top = float(positions[0]), int(np.argmin(self.model.held(positions)))
         low, high = float(positions[min(top + 1, positions.size - 1)]), float(positions[max(top - 1, 0)])
@@ -213,11 +214,13 @@ class ModelBranch:
             return min(max(known, end), zero), step
         if self.settings.is_smooth:
             return peak, 0.0 if self.settings.forces.range else step
+        corners = [corner for corner in self.model.corners if low < corner < high]
         for _ in range(zooms):
             closer, width = np.linspace(high, low, fine, retstep=True)
+            closer = np.append(closer, corners)
             peak = float(closer[int(np.argmin(self.model.held(closer)))])
             low, high = max(peak - abs(width), end), min(peak + abs(width), zero)
-        return peak, step
+        return peak, self.settings.tolerance * step if peak in corners else step  # a polynomial has no corner
 
     def mark(self, name: str) -> None:
         """Report the last state under a name; a state may have several names."""

@@ -164,11 +164,11 @@ class Reduction:
         dashpots; of others there are none. Both lists are empty for these others where the scene gives the particles.
         """
         bodies = self.scene.bodies
-        is_chosen = bodies.particles == "auto" and bodies.own_count is None  # else positions are part of the scene
+        is_chosen = bodies.particles == "auto" and not bodies.profile.is_plane  # else positions are part of the scene
         if not (is_chosen or self.model.shares_edges):
             return [], []
         is_pointed = bodies.profile.curvature_radius is None and not bodies.profile.has_edge
-        return self.model.lattices(is_pointed)
+        return self.model.lattices(is_pointed, bodies.profile.has_edge)
 
     @cached_property
     def lattice(self) -> Values:

@@ -52,7 +52,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
             + ("more [damping]" if scene.method == "dynamic" else "a smaller load or smaller displacements")
             + ", or a larger [accuracy] tolerance"
         )
-    if state.rule.is_cut(state.profile):
+    if scene.bodies.own_count is None and state.rule.is_cut(state.profile):
         raise ChainEndError(
             f"the contact reaches the end of the chain {where}",
             f"use {_more_particles(scene, settings)}, or a smaller load",
@@ -149,7 +149,7 @@ def doubts(scene: Scene, settings: Settings, states: tuple[State, ...]) -> dict[
     the plane's stiffness; "slow": drag or mass; "snaps": pairs snap, unless the scene prescribes the path;
     "table_core": particles came nearer than the table was made for. `states`: one at least.
     """
-    warnings = _chain_end(scene, settings, states) if states[0].rule.ends_with_chain else {}
+    warnings = _chain_end(scene, settings, states) if scene.bodies.own_count is None else {}
     share = settings.forces.share(scene)
     if share > settings.tolerance:
         warnings["cutoff"] = (

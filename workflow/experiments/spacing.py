@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
@@ -43,9 +42,15 @@ def with_spacing(scene: Scene) -> Scene:
     """
     if scene.bodies.given_spacing != "auto":
         return scene
-    radius = contact_radius(scene)
+    radius, profile = contact_radius(scene), scene.bodies.profile
+    wider = profile.reach / radius if profile.has_edge else 1.0  # whole particles are as wide as such a body
+
+    def with_count(count: int) -> Scene:
+        """Return the scene with a number of particles in the contact radius, of a body with an edge that or more."""
+        return _spaced(scene, wider * radius, math.ceil(wider * count))
+
     share = 0.5 if scene.is_oblique else 0.9  # of the tolerance: timesteps take a part of that of sliding particles
-    chosen, error = spaced_within_tolerance(partial(_spaced, scene, radius), share)
+    chosen, error = spaced_within_tolerance(with_count, share)
     tolerance = scene.accuracy.tolerance
     if tolerance < error < math.inf:  # the run reports the radius that has an infinite error
         larger = "" if error > 0.9 * LARGEST else f"use an accuracy.tolerance of {_rounded_up(error)}, or "
@@ -131,7 +136,7 @@ def contact_curve(scene: Scene) -> tuple[Array, Array, Array]:
     work, reach = scene.work_of_adhesion, bodies.profile.reach
     # The transform of a circle has no bound at the end of the body.
     radii = np.geomspace(1e-12, min(1e12, 0.999999 * reach), 12000)
-    if bodies.profile.has_edge:
+    if bodies.profile.is_plane:
         radii = np.asarray([reach])
     with np.errstate(over="ignore"):
         heights = bodies.height(radii)

@@ -156,8 +156,9 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
     """Return (base scene with the defaults of a fit, its problems), [] for none.
 
     Defaults are a rigid plane and automatic spacing, and a load of 1 nN. The scene is None where it cannot be read,
-    with all its problems; else the first problem alone is returned: no rigid plane with the MDR, an effect that a fit
-    does not have, or no material in SI. Paths of problems begin with "base.". `folder`: for the file of a profile.
+    with all its problems; else the first problem alone is returned: no rigid plane with the MDR, a punch, an effect
+    that a fit does not have, or no material in SI. Paths of problems begin with "base.". `folder`: for the file of a
+    profile.
     """
     bodies = base.get("bodies", {})
     given = {"title": "fit", "experiment": HISTORY if "viscoelasticity" in base else LOAD, **base}
@@ -168,6 +169,8 @@ def _base(base: Mapping[str, Any], folder: Path) -> tuple[Scene | None, list[Pro
         return None, [Problem(f"base.{fault.path}", fault.message, fault.given, fault.hint) for fault in error.problems]
     if scene.bodies.lower != "rigid_plane" or scene.bodies.reduction != "mdr":
         return scene, [Problem("base.bodies.lower", 'must be "rigid_plane", with the reduction "mdr"')]
+    if scene.bodies.profile.has_edge:
+        return scene, [Problem("base.bodies.profile", "not a punch in a fit, whose contact models have no edge")]
     for name, effect in zip(scene.effects, scene.present, strict=True):
         if not effect.keeps_springs and name != "viscoelasticity":
             return scene, [Problem(f"base.{name}", "not in a fit, whose contact models are of linear springs")]

@@ -465,6 +465,12 @@ class JkrCells(Particles):
         """Displacements [LU] at which the force jumps: of pull-off under fixed grips and of the first touch, 0."""
         return (self.apart, 0.0)
 
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """The displacement [LU] at which the contact edge leaves the end of the body; empty of an unbounded one."""
+        reach = self.law.profile.reach
+        return tuple(self.law.opened(np.asarray([reach])).tolist()) if reach < math.inf else ()
+
     def _holds(self, displacements: Array) -> NDArray[np.bool_]:
         """Return whether the bodies are in contact at each displacement [LU] of a path, (m,), that begins with
         separated bodies.

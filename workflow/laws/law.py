@@ -61,7 +61,7 @@ class Law(ABC):
     Attributes:
         in_time: whether forces depend on the rate of loading.
         is_lossless: whether a closed path dissipates no energy.
-        rules: definitions of the contact radius: of a body with an edge, of bodies that attract each other, of others.
+        rules: definitions of the contact radius: of a plane body, of bodies that attract each other, of others.
         table: class that tabulates a profile whose transform takes long.
         file: name of the deck's file with the `columns` of the particles; "" without one.
         closed_forms: families of closed forms (`body.theory`) that may be printed with a run.
@@ -143,10 +143,10 @@ class Law(ABC):
     def rule(cls, scene: Scene) -> type[RadiusRule]:
         """Return the class that defines the contact radius of a scene.
 
-        `rules[0]` of a profile with an edge, else `rules[1]` of bodies that attract each other, else `rules[2]`; by
+        `rules[0]` of a plane profile, else `rules[1]` of bodies that attract each other, else `rules[2]`; by
         default ToTheEdge, InTension (radius of the largest tension) and Compressed.
         """
-        return cls.rules[0 if scene.bodies.profile.has_edge else 1 if cls.attracts(scene) else 2]
+        return cls.rules[0 if scene.bodies.profile.is_plane else 1 if cls.attracts(scene) else 2]
 
     @classmethod
     def range_of(cls, scene: Scene, assumed: float) -> float:

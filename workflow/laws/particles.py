@@ -69,16 +69,17 @@ class Particles(ABC):
         """
         return False
 
-    def lattices(self, is_pointed: bool) -> tuple[list[Particles], list[Particles]]:
+    def lattices(self, is_pointed: bool, has_edge: bool) -> tuple[list[Particles], list[Particles]]:
         """Return (moved, finer): new particles of the same body at other positions, to sample the discretisation error.
 
         The second list has those at a half and a quarter of the spacing; it is empty unless `shares_edges`. The first
         list begins, for a body with kinks or one that `is_pointed`, as a cone, with those at 0.93 and 0.86 of the
         spacing. Then it has those shifted against the apex: by 0.375, 0.25, 0.125 and 0 spacings for a body with kinks;
-        else by each of `phases` where the second list is empty, and none where it is not.
+        else by each of `phases` where the second list is empty, and none where it is not. Of a body that `has_edge`
+        these are 0.375, 0.25 and 0.125: a shift by 0 would put a particle at each edge, one more than cells.
         """
         kinks, finer = self.law.profile.kinks, (0.5, 0.25) if self.shares_edges else ()
-        phases = MORE_PHASES if kinks else () if finer else self.phases
+        phases = MORE_PHASES if kinks else () if finer else MORE_PHASES[:-1] if has_edge else self.phases
         # These put a kink elsewhere between particles, on both sides alike.
         uneven = (0.93, 0.86) if kinks or is_pointed else ()
         moved = [self.resized(factor) for factor in uneven] + [self.shifted(phase) for phase in phases]
@@ -214,6 +215,11 @@ class Particles(ABC):
         They need not be sorted.
         """
         return self.limits
+
+    @property
+    def corners(self) -> tuple[float, ...]:
+        """Displacements [LU] at which F(d) has a corner in unloading; empty by default."""
+        return ()
 
     @property
     def critical_displacement(self) -> float | None:

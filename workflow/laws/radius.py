@@ -8,7 +8,18 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from contact1d.analysis.pressure import Array, Profile, ZonedProfile, end_pressure_share
-from contact1d.analysis.radius import ContactRadius, compressive_radius, held_radius, tensile_radius, whole_cells
+from contact1d.analysis.radius import (
+    NEGLIGIBLE,
+    ContactRadius,
+    compressive_radius,
+    covers,
+    ends_whole,
+    held_radius,
+    tensile_radius,
+    whole_cells,
+    within,
+)
+from contact1d.workflow.laws.numerics import ROUND_OFF
 from contact1d.workflow.scene import Bodies
 
 
@@ -20,13 +31,11 @@ class RadiusRule(ABC):
         bodies: bodies of the scene.
         share: error of each pressure over the largest one (relative); `Compressed` and `Given` add its effect to the
             uncertainty of a radius where the pressure falls to 0.
-        ends_with_chain: whether the end of the chain may cut the contact.
         jump: line load [FU/LU] just inside the edge; None where the particles show it.
     """
 
     bodies: Bodies
     share: float
-    ends_with_chain: ClassVar[bool] = True
     jump: ClassVar[float | None] = 0.0
 
     @abstractmethod
@@ -48,7 +57,7 @@ class RadiusRule(ABC):
 
     def is_cut(self, profile: Profile) -> bool:
         """Return whether the first or the last particle of the chain has a pressure other than 0: the contact reaches
-        an end.
+        an end, which may cut it unless the body has an edge.
         """
         return bool(max(abs(profile.pressure[0]), abs(profile.pressure[-1])) > 0.0)
 
@@ -65,19 +74,26 @@ class RadiusRule(ABC):
 
 
 class Compressed(RadiusRule):
-    """Contact up to the last particle that is pressed."""
+    """Contact up to the last particle that is pressed, or up to the edge of the body."""
 
     def of(self, profile: Profile) -> ContactRadius | None:
         """Return the contact radius at which the pressure falls to 0, with its uncertainty and edges [LU].
 
         It lies between the outermost compressed particle and the next, or at the last particle of the chain where that
-        is compressed. None without a compressed particle.
+        is compressed. Of a body with an edge it is that edge, to round-off, where the parabola through the last three
+        pressures is not below 0 there. None without a compressed particle.
 
         Raises:
             ValueError: a particle carries tension beside one that is compressed, there are fewer than 3, or a pressure
                 is infinite.
         """
-        return compressive_radius(profile, self.share) if profile.pressure.max() > 0.0 else None
+        if not profile.pressure.max() > 0.0:
+            return None
+        if self.bodies.profile.has_edge:
+            profile = within(profile, self.bodies.reach)
+            if covers(profile, self.bodies.reach):
+                return _whole(self.bodies, NEGLIGIBLE)
+        return compressive_radius(profile, self.share)
 
 
 class Held(RadiusRule):
@@ -88,13 +104,18 @@ class Held(RadiusRule):
     def of(self, profile: Profile) -> ContactRadius | None:
         """Return the contact radius [LU] of a pressure that jumps to 0 at its edges, with its uncertainty and edges.
 
-        The pressure of the outermost loaded particle shows which part of its cell is in contact. None where all
-        pressures are 0.
+        The pressure of the outermost loaded particle shows which part of its cell is in contact. Of a body with an edge
+        the whole cell beside it is in contact where its pressure goes on from those inside. None where all pressures
+        are 0.
 
         Raises:
             ValueError: there are fewer than 3 particles, or a pressure is not finite.
         """
-        return held_radius(profile) if profile.pressure.any() else None
+        if not profile.pressure.any():
+            return None
+        if self.bodies.profile.has_edge and ends_whole(within(profile, self.bodies.reach), ROUND_OFF):
+            return _whole(self.bodies, NEGLIGIBLE)
+        return held_radius(profile)
 
     def load(self, profile: Profile, radius: ContactRadius) -> Array:
         """Return the line load at each particle, (n,) [FU/LU], compression positive.
@@ -104,6 +125,11 @@ class Held(RadiusRule):
         loaded particles all are force over spacing.
         """
         return whole_cells(profile, radius)
+
+
+def _whole(bodies: Bodies, share: float) -> ContactRadius:
+    """Return the half-width of a body [LU] as its contact radius, uncertain by a `share` of it."""
+    return ContactRadius(bodies.reach, share * bodies.reach, -bodies.reach, bodies.reach, reaches_end=False)
 
 
 class Given(RadiusRule):
@@ -168,7 +194,6 @@ class InTension(RadiusRule):
 class ToTheEdge(RadiusRule):
     """Contact up to the edge of a body; of one that `clings` also at zero force, while particles are on the plane."""
 
-    ends_with_chain = False
     jump = None
     clings: ClassVar[bool] = False
 
@@ -178,12 +203,7 @@ class ToTheEdge(RadiusRule):
         A body that adheres (`clings`) touches also where a particle is on the plane without a force.
         """
         touches = profile.pressure.any() or (self.clings and (profile.z_upper <= 0.0).any())
-        edge = self.bodies.reach
-        return ContactRadius(edge, 0.0, -edge, edge, reaches_end=False) if touches else None
-
-    def is_cut(self, profile: Profile) -> bool:
-        """Return False: chain and body end at the same position."""
-        return False
+        return _whole(self.bodies, 0.0) if touches else None
 
 
 class Clinging(ToTheEdge):

@@ -29,25 +29,28 @@ from contact1d.workflow.scene.tables import (
 
 
 def punch(d: Draft) -> Rows:
-    """Yield the rules of a flat punch, whose edge is half a spacing beyond its last particle.
+    """Yield the rules of a flat or capped punch, whose edge is half a spacing beyond its last particle.
 
-    The radius over the spacing is finite, a whole number of halves and at least 1.5; a number of particles that is
-    given is twice that. A rule is (dotted key, whether it is broken, what is wrong, suggested fix); unbroken ones are
-    yielded, too. No rule for another profile, or where radius or spacing is unknown or "auto"; only the first where it
-    is broken.
+    The radius over the spacing is finite; of a flat punch a whole number of halves and at least 1.5, of a capped one a
+    whole number and at least 2; a number of particles that is given is twice that. A rule is (dotted key, whether it is
+    broken, what is wrong, suggested fix); unbroken ones are yielded, too. No rule for another profile, or where radius
+    or spacing is unknown or "auto"; only the first where it is broken.
     """
     radius, spacing = d["bodies.profile.radius"], d["bodies.spacing"]
-    if d.profile != "flat_punch" or radius is None or spacing in (None, "auto"):
+    if d.profile not in ("flat_punch", "capped_punch") or radius is None or spacing in (None, "auto"):
         return
+    step, steps = 1, "1.5 spacings and a whole number of half spacings"
+    if d.profile == "capped_punch":  # no particle is at the apex, so that a half and a quarter of the spacing fit, too
+        step, steps = 2, "2 spacings and a whole number of spacings"
     width = 2.0 * (radius / spacing)
     yield ("bodies.profile.radius", width == math.inf,
            "is too large compared with the spacing", "make it smaller, or bodies.spacing larger")
     if width == math.inf:
         return
-    count = max(3, round(width))
+    count = step * max(math.ceil(3 / step), round(width / step))
     between = abs(width - count) > WHOLE_NUMBER_ERROR * count
     yield ("bodies.profile.radius", between,
-           "must be at least 1.5 spacings and a whole number of half spacings",
+           f"must be at least {steps}",
            f"the nearest is {0.5 * count * spacing:g} (LU)")
     yield ("bodies.particles", not between and d["bodies.particles"] not in (None, "auto", count),
            f"must be {count}, the radius times 2 over the spacing", f'write {count} or "auto"')
@@ -176,6 +179,14 @@ BODY_RULES: tuple[Rule, ...] = (
      "must be a length (LU) with {needs_spacing}: masses, drags and springs between particles belong to one spacing",
      f"{GIVE_SPACING}, or remove {{needs_spacing}}"),
     punch,
+    # A body that ends within the contact or beyond it
+    ("bodies.lower", "on_chain bodies.profile.kind=capped_punch",
+     'must be "rigid_plane" with a capped punch, whose contact may end at its edge or before', f"use {PLANE}"),
+    ("bodies.profile.kind", "experiment.kind=impact bodies.profile.kind=capped_punch",
+     "not a capped punch in an impact, whose contact radius is not followed up to the edge", "use another profile"),
+    ("adhesion.range adhesion.rate neighbours viscoelasticity friction noise", "bodies.profile.kind=capped_punch",
+     "not with a capped punch, whose contact edge is that of linear springs or of JKR",
+     "remove it, or use another profile"),
     # One elasticity, and units that are either given or follow from F_A and a₀ of the run with γ and E*
     ("bodies.bulk_stiffness", "bodies.bulk_stiffness=auto !elastic",
      "must be given (FU/LU): the scene has no elastic moduli from which it follows",

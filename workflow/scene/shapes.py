@@ -39,11 +39,12 @@ FEWEST_POINTS = 4
 class Shape(Table):
     """The base class of all profiles; each kind overrides what differs.
 
-    `has_edge`: the body ends at its `reach` by a flank, so that its chain and the contact are as wide as the body;
-    other bodies rise, and the contact ends on them.
+    `has_edge`: the body ends at its `reach` by a vertical flank, so that its chain is as wide as the body;
+    `is_plane`: it has the height 0 wherever there is a body, so that the contact is as wide, too.
     """
 
     has_edge: ClassVar[bool] = False
+    is_plane: ClassVar[bool] = False
     slow: ClassVar[bool] = False
     """Whether the transform takes long, so that a predictor that asks thousands of times has it tabulated."""
 
@@ -342,6 +343,7 @@ class Level(Shape):
     """z = 0 wherever there is a body."""
 
     has_edge = True
+    is_plane = True
 
     def height(self, x: Array) -> Array:
         """Return the height 0 [LU] at all positions x [LU], also beyond an edge; same shape."""
@@ -370,6 +372,34 @@ class FlatPunch(Level):
     @property
     def reach(self) -> float:
         """The radius [LU] of the punch, beyond which there is no body."""
+        return self.radius
+
+
+class CappedPunch(Shape):
+    """Profile of the upper body: z = x²/2R out to the edge, and no body beyond it."""
+
+    kind: Literal["capped_punch"]
+    """z = x²/2R within the radius b, no body beyond it"""
+    radius: Length
+    """radius b of the punch, a whole number of spacings and at least 2"""
+    cap_radius: Length
+    """radius of curvature R of the end"""
+
+    has_edge = True
+
+    def height(self, x: Array) -> Array:
+        """Return the height z = x²/2R [LU] at all positions x [LU], also beyond the edge; same shape."""
+        return x**2 / (2.0 * self.cap_radius)
+
+    def transformed(self, x: Array) -> Array:
+        """Return the height g = x²/R [LU] after the MDR transform at all positions x [LU], also beyond the edge; same
+        shape.
+        """
+        return x**2 / self.cap_radius
+
+    @property
+    def reach(self) -> float:
+        """The radius b [LU] of the punch, beyond which there is no body."""
         return self.radius
 
 
