@@ -77,6 +77,7 @@ LAWS: dict[str, dict[str, Any]] = {
     "rate": {"adhesion": {"work_of_adhesion": stiffness(WORK), "rate": {"velocity": velocity(1.0), "exponent": 0.6}}},
     "prony": {"viscoelasticity": {"terms": ARMS}},
     "kelvin_voigt": {"viscoelasticity": {"retardation_time": duration(0.3)}},
+    "restitution": {"viscoelasticity": {"restitution": 0.7}},
     "friction": {"friction": {"coefficient": 0.3}},
     "noise": {"noise": {"temperature": energy(1e-3), "seed": 1}},
     "pairs": {"interaction": {"repulsion": NEAR}},
@@ -114,6 +115,7 @@ EXPERIMENTS: dict[str, dict[str, Any]] = {
     "hold": {"displacement": length(DEPTH), "duration": duration(60.0)},
     "hold a force": {"force": force(LOAD), "duration": duration(400.0)},
     "impact": {"velocity": velocity(0.3)},
+    "impact obliquely": {"velocity": velocity(0.3), "tangential_velocity": velocity(0.2)},
     "slide": {"normal_force": force(0.2), "distance": length(4.0)},
 }  # fmt: skip
 """By a name that begins with their kind."""
@@ -199,6 +201,8 @@ class Combination:
             tables.pop("plate", None)
         if "plate" in tables:
             tables["plate"] = own.get(kind_of(self.experiment), {})
+        if self.experiment == "impact obliquely":
+            tables["plate"] = tables["plate"] | {"lever_arm": length(400.0), "moment_of_inertia": Q(8e5, 1.0, 1.0, 2.0)}
         experiment = {"kind": kind_of(self.experiment)} | EXPERIMENTS[self.experiment]
         if not self.on_plane:
             experiment |= {key: force(BETWEEN) for key in ("force", "preload") if key in experiment}

@@ -198,6 +198,8 @@ def kelvin_voigt(one: Combination) -> Numbers:
 def friction(one: Combination) -> Numbers:
     """Cattaneo, Mindlin, Jaeger and Ciavarella; after a turn by Masing's rule."""
     contact = Contact(BODIES[one.profile], MODULUS)
+    if one.experiment == "impact obliquely":
+        return {name: value for name, value in bounced(contact).items() if name != "dissipated_energy"}
     a = contact.under(LOAD, GUESS)[0]
     if one.profile == "flat_punch":
         return {"contact_radius": a}
@@ -216,7 +218,7 @@ def friction(one: Combination) -> Numbers:
 
 REFERENCES: dict[str, Callable[[Combination], Numbers]] = {
     "elastic": elastic, "jkr": lambda one: elastic(one, WORK), "maugis": maugis, "rate": rated, "prony": prony,
-    "kelvin_voigt": kelvin_voigt, "friction": friction,
+    "kelvin_voigt": kelvin_voigt, "friction": friction, "restitution": lambda one: {"restitution": 0.7},
 }  # fmt: skip
 """By the law of a combination; none of particles that interact, whose numbers are those of one lattice."""
 

@@ -19,7 +19,7 @@ from typing import Any
 import pytest
 
 from contact1d.workflow.engine.session import Engine
-from tests.contracts.members import MODULUS, OTHERS, Combination, allowed, sample, scene_of, unknown
+from tests.contracts.members import MODULUS, OTHERS, Combination, allowed, kind_of, sample, scene_of, unknown
 from tests.contracts.references import expected
 from tests.contracts.runs import Found, Runs
 
@@ -124,8 +124,8 @@ def applying(one: Combination) -> set[str]:
     if not one.on_plane or "neighbours" in one.tables:
         return found | ({"balance"} if not timed else set())
     if scene_of(one).is_modelled:
-        found |= {"plan", "energy"} if not timed else {"energy"} if one.experiment == "impact" else set()
-    return found | ({"balance"} if one.experiment == "impact" else {"pressure"})
+        found |= {"plan", "energy"} if not timed else {"energy"} if kind_of(one.experiment) == "impact" else set()
+    return found | ({"balance"} if kind_of(one.experiment) == "impact" else {"pressure"})
 
 
 @cases("checks", lambda one: True)
