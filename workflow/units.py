@@ -23,6 +23,7 @@ MASS = "MU"
 TIME = "TU"
 VELOCITY = "LU/TU"
 SPIN = "1/TU"
+RATE = "1/(LU·TU)"
 NUMBER = "1"
 
 
@@ -60,11 +61,12 @@ SI = {
     "FU/TU": ModelUnit("N/s", -0.5, 1.5, -0.5),
     "FU·TU/LU": ModelUnit("N·s/m", -0.5, 0.5, 0.5),
     SPIN: ModelUnit("rad/s", -0.5, 0.5, -0.5),
+    RATE: ModelUnit("1/(m·s)", -1.5, 0.5, -0.5),
     "MU·LU²": ModelUnit("kg·m²", 2.0, 0.0, 1.0),
     NUMBER: ModelUnit("1"),
 }
 """The units of the model by their names."""
-WITH_PREFIX = (*(unit.si for unit in SI.values() if unit.si not in ("kg", "kg·m²", "1")), "J/m²")
+WITH_PREFIX = (*(unit.si for unit in SI.values() if unit.si not in ("kg", "kg·m²", "1/(m·s)", "1")), "J/m²")
 """SI units that take a prefix."""
 PREFIXES = "yzafpnµm kMGT"
 """SI prefixes by rising powers of 1000; the blank is no prefix."""

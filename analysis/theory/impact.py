@@ -10,10 +10,14 @@ A spring that leaves takes its energy along; B(d) is that of the loading at the 
 time tau push with u + tau u' (V. L. Popov, M. Hess, Method of Dimensionality Reduction, 2015, chapter 7):
 
     d'' = -(d^p + tau p d^(p-1) d') (approach),    d'' = -(d + tau d')^p (rebound),    until d + tau d' = 0
+
+LAMMPS's `damping viscoelastic` has the force of the approach also in the rebound, until d = 0, or with `limit_damping`
+until d + tau p d' = 0, where it becomes tensile.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from functools import cache
 from typing import Any
@@ -46,15 +50,18 @@ def full_stick(exponent: float, chi: float) -> float:
         d, _, place, _, force = pressed.sol(last - time)
         return [y[1], -2.0 * chi * (force + stiffness(d) * (y[0] - place))]
 
-    return float(_motion(unloading, pressed.y[[2, 3], -1], lambda _: 1.0, last).y[1, -1])
+    return float(_motion(unloading, pressed.y[[2, 3], -1], lambda _: 1.0, time=last).y[1, -1])
 
 
-def restitution(exponent: float, time: float) -> float:
+def restitution(exponent: float, time: float, ends: float | None = None, accuracy: float | None = None) -> float:
     """Return v'/v of a Kelvin-Voigt body z ~ r^n after an impact, falling from 1 to 0 with a rising retardation time.
 
     Args:
         exponent: n, 1 or more.
         time: retardation time > 0, in the unit of `unit_time`.
+        ends: None, or of LAMMPS's `damping viscoelastic` the end of the contact, d + ends tau p d' = 0: 0, or 1 with
+            `limit_damping`.
+        accuracy: tolerance of the equation of motion; None: 1e-11.
     """
     power = 1.0 + 1.0 / exponent
 
@@ -67,8 +74,10 @@ def restitution(exponent: float, time: float) -> float:
         """Return the rates of (d, d')."""
         return [y[1], -(max(y[0] + time * y[1], 0.0) ** power)]
 
-    deepest = _motion(approach, [0.0, 1.0], lambda y: y[1]).y[0, -1]
-    return -float(_motion(rebound, [deepest, 0.0], lambda y: y[0] + time * y[1]).y[1, -1])
+    deepest = _motion(approach, [0.0, 1.0], lambda y: y[1], accuracy).y[0, -1]
+    last = time if ends is None else ends * power * time
+    rates = rebound if ends is None else approach
+    return -float(_motion(rates, [deepest, 0.0], lambda y: y[0] + last * y[1], accuracy).y[1, -1])
 
 
 @cache
@@ -85,6 +94,31 @@ def retardation(exponent: float, wanted: float) -> float:
     return float(brentq(lambda time: restitution(exponent, time) - wanted, *ends))
 
 
+def nearest(times: Sequence[float], ends: float, share: float = 1e-3) -> tuple[float, list[float], list[float]]:
+    """Return (factor, v'/v at each velocity with it, v'/v of the Kelvin-Voigt sphere there).
+
+    The factor is that on eta = 2E* tau/m of LAMMPS's `damping viscoelastic` with the smallest largest difference.
+
+    Args:
+        times: retardation time tau > 0 at each velocity v, in the unit of `unit_time`, which falls with v^(1/5).
+        ends: of the contact, as of `restitution`.
+        share: accuracy of the factor.
+    """
+    from scipy.optimize import minimize_scalar
+
+    def reached(factor: float, limit: float | None = ends) -> list[float]:
+        """Return v'/v at each velocity with a factor on eta; with the limit None of the sphere."""
+        return [restitution(2.0, factor * time, limit, 0.5 * share**2) for time in times]
+
+    def missed(factor: float) -> float:
+        """Return the largest difference at a factor on eta."""
+        return max(abs(e - exact) for e, exact in zip(reached(factor), wanted, strict=True))
+
+    wanted = reached(1.0, None)
+    factor = minimize_scalar(missed, bounds=(0.0, 2.0), method="bounded", options={"xatol": share}).x
+    return float(factor), reached(factor), wanted
+
+
 def unit_time(exponent: float, force: float, mass: float, velocity: float) -> float:
     """Return the time D/v [time], D the displacement [length] where F(D) D = m v^2.
 
@@ -97,7 +131,13 @@ def unit_time(exponent: float, force: float, mass: float, velocity: float) -> fl
     return float((mass * velocity**2 / force) ** (1.0 / (2.0 + 1.0 / exponent)) / velocity)
 
 
-def _motion(rates: Rates, start: Sequence[float], ends: Callable[[Any], float], time: float = 1e9) -> Any:
+def _motion(
+    rates: Rates,
+    start: Sequence[float],
+    ends: Callable[[Any], float],
+    accuracy: float | None = None,
+    time: float = math.inf,
+) -> Any:
     """Return scipy's solution from `start` until `ends`, a function of the state, is 0, or until a time."""
     from scipy.integrate import solve_ivp
 
@@ -107,5 +147,11 @@ def _motion(rates: Rates, start: Sequence[float], ends: Callable[[Any], float], 
 
     event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
     return solve_ivp(
-        rates, (0.0, time), start, "DOP853", events=event, dense_output=True, **dict.fromkeys(("rtol", "atol"), 1e-11)
+        rates,
+        (0.0, time),
+        start,
+        "DOP853",
+        events=event,
+        dense_output=True,
+        **dict.fromkeys(("rtol", "atol"), accuracy or 1e-11),
     )

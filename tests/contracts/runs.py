@@ -10,7 +10,8 @@ from tests.contracts.members import MODEL, Combination, Q, Units, scene_of
 
 POWERS = {
     "LU": (1, 0, 0), "FU": (0, 1, 0), "TU": (0, 0, 1), "MU": (-1, 1, 2),
-    "m": (1, 0, 0), "N": (0, 1, 0), "s": (0, 0, 1), "kg": (-1, 1, 2), "J": (1, 1, 0), "Pa": (-2, 1, 0), "rad": (0, 0, 0),
+    "m": (1, 0, 0), "N": (0, 1, 0), "s": (0, 0, 1), "kg": (-1, 1, 2), "J": (1, 1, 0), "Pa": (-2, 1, 0),
+    "rad": (0, 0, 0),
 }  # fmt: skip
 """Of length, force and time, of each unit of the model and of SI."""
 SUPERSCRIPTS = {"": 1, "²": 2, "³": 3}

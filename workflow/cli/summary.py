@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contact1d.analysis.radius import moved_centre
+from contact1d.workflow.body.damping import damping_in_words
 from contact1d.workflow.body.theory import in_words
 from contact1d.workflow.runs import inputs
 from contact1d.workflow.runs.report import results_in
@@ -57,7 +58,7 @@ def quantities(results: Mapping[str, Any]) -> list[str]:
         lines.append(f"  {label:<31} {number:<32} {', '.join(in_words(results, name))}".rstrip())
     units = {unit: Quantity(**entry) for unit, entry in results.get("units", {}).items()}
     lines += [f"  {'1 ' + unit:<31} {size}" for unit, size in units.items() if size.value != 1.0]
-    return lines + inputs.in_words(results)
+    return [*lines, *damping_in_words(results), *inputs.in_words(results)]
 
 
 def _reduction(results: Mapping[str, Any]) -> str:

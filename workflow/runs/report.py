@@ -23,6 +23,7 @@ from contact1d.analysis.curve import (
     write_states,
 )
 from contact1d.files import UnreadableError, read_text, write_whole
+from contact1d.workflow.body.damping import damping_models
 from contact1d.workflow.body.derived import reported_state
 from contact1d.workflow.body.reading import doubt_of_the_image, of_the_body
 from contact1d.workflow.body.scan import misfit, scan_entry
@@ -89,6 +90,8 @@ def results(scene: Scene, outcome: Outcome, timing: Mapping[str, float]) -> dict
         entries["units"] = {unit: scales.in_si(1.0, 0.0, unit) for unit in units if scales.know(unit)}
     validity = checks(scene, outcome, quantities, scales)
     entries |= {"theory": theory(scene, quantities, scales), "validity": [check.entry() for check in validity]}
+    if models := damping_models(scene, scales):
+        entries["damping_models"] = models
     if table := inputs.inputs_of(scene, shown):
         entries["inputs"] = inputs.entries(table)
     warnings = dict(outcome.warnings) | misfit(scene) | doubt_of_the_image(scene)

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import astuple
 from typing import Any
 
-from annotated_types import Ge, Gt, Le, MinLen
+from annotated_types import Ge, Gt, Le, Lt, MinLen
 from pydantic_core import PydanticUndefined
 
 from contact1d.workflow.scene.problems import as_toml
@@ -22,8 +22,13 @@ from contact1d.workflow.scene.tables import Tables
 DIALECT = "http://json-schema.org/draft-07/schema#"
 SIMPLE = {bool: "true or false", str: "text in quotes", int: "a whole number", float: "a number"}
 TYPES = {bool: "boolean", str: "string", int: "integer", float: "number"}
-RANGES = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum"}
-IN_WORDS = {"exclusiveMinimum": "greater than", "minimum": "of at least", "maximum": "at most"}
+RANGES = {Gt: "exclusiveMinimum", Ge: "minimum", Le: "maximum", Lt: "exclusiveMaximum"}
+IN_WORDS = {
+    "exclusiveMinimum": "greater than",
+    "minimum": "of at least",
+    "maximum": "at most",
+    "exclusiveMaximum": "less than",
+}
 LENGTHS = {MinLen: "minItems"}
 TEXT_PATTERN = r"^[ \t]*[+\-−]?[0-9]*\.?[0-9]+.*[A-Za-zµμÅ°%]"
 """The pattern of a text that is a number with a unit."""

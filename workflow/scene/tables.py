@@ -459,23 +459,30 @@ class Tables(Table):
     @property
     def relaxation(self) -> Viscoelasticity:
         """[viscoelasticity], with the retardation time [TU] in place of a `restitution`; StopIteration without any."""
-        import numpy as np  # a scene can do without it
+        from contact1d.analysis.theory.impact import retardation
 
-        from contact1d.analysis.theory.impact import retardation, unit_time
-
-        effect, impact, degree = self.the(Viscoelasticity), self.experiment, self.bodies.profile.degree
+        effect, degree = self.the(Viscoelasticity), self.bodies.profile.degree
         if effect.restitution is None or degree is None:
             return effect
-        plate = self.the(Plate)
+        time = self.impact_time * retardation(degree, effect.restitution)
+        return effect.model_copy(update={"retardation_time": time, "restitution": None})
+
+    @property
+    def impact_time(self) -> float:
+        """Unit of time [TU] of the impact of a body z ∝ |x|ⁿ at its velocity v: D/v, where F(D) D = m v²."""
+        import numpy as np  # a scene can do without it
+
+        from contact1d.analysis.theory.impact import unit_time
+
+        impact, degree, plate = self.experiment, self.bodies.profile.degree, self.the(Plate)
+        assert degree is not None
         assert isinstance(impact, Impact)
         assert plate.mass != "auto"
         # F = 2E* n/(n + 1) a d at a displacement d, here that of a contact radius of one spacing.
         a, modulus = self.bodies.spacing, self.bulk_stiffness / self.bodies.spacing
         d = float(self.bodies.profile.transformed(np.asarray([a]))[0])
         force = 2.0 * modulus * degree / (degree + 1.0) * a * d / d ** (1.0 + 1.0 / degree)
-        unit = unit_time(degree, force, plate.mass, impact.velocity)
-        time = unit * retardation(degree, effect.restitution)
-        return effect.model_copy(update={"retardation_time": time, "restitution": None})
+        return unit_time(degree, force, plate.mass, impact.velocity)
 
     @property
     def is_oblique(self) -> bool:
