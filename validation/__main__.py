@@ -57,8 +57,8 @@ for name, given in COMMANDS.items():
 def pages() -> None:
     """VALIDATION.md, the tables, the times of docs/performance.md and docs/grains.md from validation/results."""
     from contact1d.analysis.plots import save_figure
-    from validation.figures import margins, save
-    from validation.grains.page import blocks, drawings
+    from docs.grains import write
+    from validation.figures import margins
     from validation.page import margins_of, speed_table, summary, tables_page, write_between
     from validation.study import read_record
 
@@ -67,11 +67,7 @@ def pages() -> None:
     (RESULTS / "tables.md").write_text(tables_page([records["paper"], records["hard"]]), encoding="utf-8")
     write_between(ROOT / "docs" / "performance.md", "speed", speed_table(records["speed"]))
     save_figure(margins(margins_of(records["hard"])), ROOT / "docs" / "stability" / "margins.png")
-    of_grains = read_record(RESULTS / "grains.json")
-    for name, text in blocks(of_grains).items():
-        write_between(ROOT / "docs" / "grains.md", name, text)
-    for name, drawing in drawings(of_grains).items():
-        save(drawing, ROOT / "docs" / name)
+    write(read_record(RESULTS / "grains.json"))
 
 
 @app.command()

@@ -43,6 +43,7 @@ from contact1d.workflow.runs.processors import cores, pool
 from contact1d.workflow.runs.report import versions
 from contact1d.workflow.runs.scales import jkr_scales
 from contact1d.workflow.scene import (
+    Impact,
     Parabola,
     PullOff,
     Reduction,

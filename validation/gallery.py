@@ -4,7 +4,6 @@ The list is the TOML file of this name. Its closed forms are Python with the fun
 """
 
 import tomllib
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -12,11 +11,11 @@ from typing import Any
 import numpy as np
 
 import contact1d
-from validation.references.numerics import integral, largest, root
+from validation.references.numerics import Function, integral, largest, root
 from validation.row import tables_beside
 
 
-def least(function: Callable[[float], float], low: float, high: float) -> float:
+def least(function: Function, low: float, high: float) -> float:
     """The least value of a function between two arguments."""
     return -largest(lambda x: -function(x), np.linspace(low, high, 200).tolist())[1]
 

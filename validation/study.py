@@ -10,7 +10,7 @@ import math
 import multiprocessing
 import signal
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
@@ -25,6 +25,8 @@ from validation.figures import Drawing, save
 from validation.row import Bound, Reference, Row, at_most, verdicts
 
 Scenes = dict[str, Scene]
+Lines = Iterable[Row]
+"""What a study found that has neither figures of its own nor a text."""
 RECORD = "record.json"
 PATIENCE, FULL_PATIENCE = 180, 3600
 """Seconds of a run, LAMMPS and all else: what hangs has failed. The long form goes on beside other work for hours."""
@@ -184,7 +186,7 @@ class Study:
     name: str
     title: str
     question: str
-    measure: Callable[[Bench], Findings]
+    measure: Callable[[Bench], Findings | Lines]
     scenes: Callable[[Scene], Scenes] | None = None
 
 
@@ -306,7 +308,8 @@ def answered(study: Study, folder: Path, full: bool) -> Answer:
     own.mkdir(parents=True, exist_ok=True)
     bench = Bench(runs, own, full, FULL_PATIENCE if full else PATIENCE)
     try:
-        found = study.measure(bench)
+        measured = study.measure(bench)
+        found = measured if isinstance(measured, Findings) else Findings([*measured])
     except Exception as error:  # what a study did not expect is the worst of its findings, and no reason to lose others
         words = f"ended by {type(error).__name__}: {error}"
         found = Findings([at_most(words, math.nan, 0.0, "a study ends with rows", evidence="set bound")])

@@ -10,6 +10,7 @@ import pytest
 
 from contact1d import Run, SceneError, read_scene, run
 from tests.validation.test_tangential import EXACT, MU, RADIUS, exact, tables
+from validation.row import tables_beside
 
 LOAD = 40.0
 
@@ -51,16 +52,7 @@ def test_a_contact_that_grows_while_it_is_drawn_sticks_within_the_cone_of_fricti
     assert value(beyond, "stick_radius") == 0.0
 
 
-WAYS = {
-    "no way at all": [(0.9, 0.0), (0.9, 0.0)],
-    "lifted off and put down again": [(0.9, 0.2), (-0.5, 0.2), (-0.5, 0.5), (0.9, 0.5), (0.9, 0.6)],
-    "grows under a tangential load": [(0.3, 0.05), (0.6, 0.1), (0.9, 0.15), (0.9, 0.3)],
-    "shrinks while it slips": [(0.9, 0.2), (0.5, 0.35), (0.2, 0.1)],
-    "fifty cycles": [(0.9, place) for place in (0.15, -0.15) * 50],
-    "one particle": [(6e-5, 7e-6), (6e-5, 2e-5), (6e-5, -3e-5)],
-    "two or three particles": [(1.6e-3, 2e-4), (1.6e-3, 5e-4), (1.6e-3, -9e-4)],
-}  # fmt: skip
-"""Displacement and place at each load step [LU]."""
+WAYS = tables_beside(__file__) | {"fifty cycles": [(0.9, place) for place in (0.15, -0.15) * 50]}
 
 
 @pytest.mark.parametrize("name", WAYS)

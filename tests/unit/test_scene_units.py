@@ -10,27 +10,11 @@ import pytest
 from contact1d import read_scene
 from contact1d.workflow.units import SI, Scales
 from tests.scenes import STEEL_ON_GLASS
+from validation.row import tables_beside
 
 BOLTZMANN = 1.380649e-23  # J/K, by the definition of the kelvin
 
-SLIDE = {
-    "title": "slide",
-    "bodies": {
-        "particles": 20, "spacing": "1 nm", "profile": {"kind": "parabola", "radius": "100 nm"},
-        "bulk_stiffness": "10 N/m", "bulk_stiffness_tangential": "8 mN/mm", "mass": "1e-25 kg",
-    },
-    "interaction": {
-        "repulsion": {"amplitude": "1 eV", "range": "5 Å"}, "attraction": {"amplitude": "0.5 eV", "range": "1 nm"},
-    },
-    "horizontal": {},
-    "damping": {"coefficient": "1e-12 kg/s"},
-    "noise": {"temperature": "27 °C", "seed": 1},
-    "plate": {"free": ["x", "z"]},
-    "cantilever": {"stiffness": "1 N/m", "velocity": "1 µm/s"},
-    "experiment": {"kind": "slide", "normal_force": "1 nN", "distance": "10 nm"},
-}  # fmt: skip
-
-
+SLIDE = tables_beside(__file__)
 RADIUS, FORCE, MODULUS = "bodies.profile.radius", "experiment.force", "material.upper.youngs_modulus"
 NEEDED: dict[str, dict[str, Any]] = {
     FORCE: {"adhesion.work_of_adhesion": 1.0},

@@ -17,24 +17,14 @@ from validation.paper import STUDIES, fig9, tangential
 from validation.paper.fig9 import asperity
 from validation.paper.scenes import barquins_reduced
 from validation.references.slide import Trace
+from validation.row import tables_beside
 from validation.study import Study
 
 LONG = ("neighbours", "fig5", "fig6", "exponents", "fig8a", "fig8b", "heat", "detachment", "fig9", "adhesive", "fig4")
 """Their references take more than a second."""
 EACH = [pytest.param(one, id=one.name, marks=[pytest.mark.slow] * (one.name in LONG)) for one in STUDIES]
 PAPER = read_scene(Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "paper.toml")
-
-
-ABOUT = {
-    "adhesion_force": (1.47, "FU"), "zero_load_radius": (28.53, "LU"), "critical_radius": (15.0, "LU"),
-    "largest_force": (40.0, "FU"), "largest_radius": (30.0, "LU"), "contact_radius": (30.0, "LU"),
-    "mean_friction": (0.02, "FU"), "static_friction": (0.02, "FU"), "cantilever_work": (0.1, "FU·LU"),
-    "dissipated_energy": (0.1, "FU·LU"), "stored_energy": (0.01, "FU·LU"),
-    "image_contact_radius": (30.0, "LU"), "image_largest_radius": (30.0, "LU"), "displacement": (0.4, "LU"),
-    "plate_temperature": (2e-3, "FU·LU"), "detachment_force": (0.5, "FU"),
-    "detachment_force_spread": (0.1, "FU"),
-}  # fmt: skip
-"""About what the paper's scene has, so that nothing fails by its size alone."""
+ABOUT = tables_beside(__file__)
 WRONG = (1.4, 3.0)
 """Factors by which each number of each run is wrong, drawn from its name: the widest tolerance of a row is 10 %."""
 POINTS, SLIDE = 30, 400

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from types import SimpleNamespace
 
 from validation.references.grains import Impact, coeff_restitution, restoring, tsuji, viscoelastic
 from validation.references.impact import Adhesive
@@ -57,28 +58,36 @@ LIMITED, LIMITED_RESTITUTION, LIMITED_TSUJI = (
 DAMPED = (VISCOELASTIC, LIMITED)
 BY_RESTITUTION = (RESTITUTION, LIMITED_RESTITUTION, TSUJI, LIMITED_TSUJI)
 FITTED = (VISCOELASTIC, LIMITED, RESTITUTION)
-ELASTIC, ADHESIVE, NEAREST, RIGID, ON_WALL, NUMBERS, TIMED, ASKED, OVER_STICKING, DRAWN = (
-    tables_beside(__file__)[name]
-    for name in ("elastic", "adhesive", "nearest", "rigid", "on_wall", "numbers", "timed", "asked", "over", "drawn")
-)
+GIVEN = SimpleNamespace(**tables_beside(__file__))
+"""What the decks are run with."""
 DECADE = (10.0**-0.5, 1.0, 10.0**0.5)
 """Velocities; A grows as v^(1/5)."""
 STRONGER = 1.527
 """W over that of the spheres with which `jkr` loses the energy of JKR: (7.0922/3.5026)^(3/5)."""
 NEAREST_JKR = f"jkr 1.82 0.0 0.3 {0.0005 * STRONGER:.7g} damping velocity"
 MEASURED = 1.1
-"""Of OVER_STICKING: from the restitution at it the sticking velocity follows."""
+"""Of GIVEN.over: from the restitution at it the sticking velocity follows."""
 
 
 def coefficient(model: Model, place: int) -> float:
-    """The nearest coefficient at TIMED[place] and velocity 1."""
-    near: float = NEAREST[model.name][place]
-    return near if model is RESTITUTION else round(2.0 * TIMED[place] * near, 6)
+    """The nearest coefficient at GIVEN.timed[place] and velocity 1."""
+    near: float = GIVEN.nearest[model.name][place]
+    return near if model is RESTITUTION else round(2.0 * GIVEN.timed[place] * near, 6)
 
 
 def at_number(A: float) -> str:
     """Where a row of a Kelvin-Voigt body is measured."""
     return f"A = {A:g}"
+
+
+def at_psi(psi: float) -> str:
+    """Where a row of an oblique impact is measured."""
+    return f"ψ = {psi:g}"
+
+
+def at_step(step: float) -> str:
+    """Where a row of `mdr` is measured, by the increment of the overlap or the timestep."""
+    return f"step {step:g}"
 
 
 def at_velocity(over: float) -> str:

@@ -1,6 +1,7 @@
 """LAMMPS's granular models by the decks beside this module, each a run that `lmp -in` repeats."""
 
 import os
+import shlex
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
@@ -19,10 +20,15 @@ INCREMENT = 4e-7
 
 
 class Found(NamedTuple):
-    """A value in the finer of two runs, and what half the timestep changed of it."""
+    """A value, what half the timestep changed of it, and the command of its run."""
 
     value: float
     change: float
+    run: str
+
+    def over(self, unit: float) -> "Found":
+        """The same in units of another quantity."""
+        return Found(self.value / unit, abs(self.change / unit), self.run)
 
 
 @cache
@@ -43,23 +49,29 @@ def ran(deck: str, **variables: str | float) -> Iterator[Any]:
         lammps.close()
 
 
-def variables_of(deck: str, names: Sequence[str], **variables: str | float) -> dict[str, float]:
+def measured(deck: str, names: Sequence[str], **variables: str | float) -> dict[str, Found]:
     """Variables at the end of a deck."""
+    command = shlex.join([f"{deck}.lmp", *(f"{name}={value}" for name, value in variables.items())])
     with ran(deck, **variables) as lammps:
-        return {name: float(lammps.extract_variable(name)) for name in names}
+        return {name: Found(float(lammps.extract_variable(name)), 0.0, command) for name in names}
+
+
+def refined(deck: str, names: Sequence[str], dt: float, **variables: str | float) -> dict[str, Found]:
+    """The same in half the timestep, with what that changed."""
+    coarse, fine = (measured(deck, names, dt=step, **variables) for step in (dt, 0.5 * dt))
+    return {name: one._replace(change=abs(one.value - coarse[name].value)) for name, one in fine.items()}
 
 
 def impact(model: str, v: float = 1.0, dt: float = STEP) -> dict[str, Found]:
     """An impact, by quantity; model: the words of `pair_coeff`."""
-    coarse, fine = (variables_of("impact", QUANTITIES, model=model, v=v, dt=step) for step in (dt, 0.5 * dt))
-    return {name: Found(fine[name], abs(fine[name] - coarse[name])) for name in QUANTITIES}
+    return refined("impact", QUANTITIES, dt, model=model, v=v)
 
 
-def force_at(overlap: float, deepest: float, model: str) -> float:
+def force_at(overlap: float, deepest: float, model: str) -> Found:
     """Force of spheres that were pressed to the overlap `deepest` and are drawn apart to another one."""
-    with ran("pulled", model=model, deepest=deepest, increment=INCREMENT) as lammps:
+    with ran("pulled", model=model, deepest=deepest, dt=INCREMENT) as lammps:
         step = 2 * round(deepest / INCREMENT) - round(overlap / INCREMENT)
         there, force = (lammps.extract_fix("curve", 0, 2, step, column) for column in (0, 1))
     if abs(there - overlap) > INCREMENT:
         raise ValueError(f"at step {step} the overlap is {there}, and should be {overlap}")
-    return float(force)
+    return Found(float(force), 0.0, "")

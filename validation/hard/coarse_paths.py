@@ -13,7 +13,7 @@ from validation.hard.judge import Case, judged
 from validation.hard.surfaces import surface
 from validation.references.axisymmetric import with_rest_radius
 from validation.row import at_most, tables_beside
-from validation.study import LONGEST, Bench, Findings, Study
+from validation.study import LONGEST, Bench, Lines, Study
 
 RADIUS, SLOPE = 10.0, 0.01
 """a₀ and the slope there of every contact [LU]."""
@@ -28,14 +28,13 @@ SPACING = 0.7
 SOURCE, LOST = "the energies of the jumps by quadrature", ("dissipated_energy", "instability_energy")
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Loops of every shape; a row each of losses that are no number."""
-    rows = []
     for words, judge in judged(bench, cases(bench.full)).items():
         none = [n.label for n in judge.numbers if n.name in LOST and n.reference and abs(n.value) <= n.uncertainty]
         unseen = f"{words}: losses reported as less than their uncertainty"
-        rows += [*judge.rows(words, SOURCE), at_most(unseen, len(none), 0.0, SOURCE, ", ".join(none)[:LONGEST] or "–")]
-    return Findings(rows)
+        yield from judge.rows(words, SOURCE)
+        yield at_most(unseen, len(none), 0.0, SOURCE, ", ".join(none)[:LONGEST] or "–")
 
 
 def cases(full: bool) -> Iterator[Case]:

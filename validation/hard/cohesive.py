@@ -9,6 +9,7 @@ quadratures.
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from validation.references.dugdale_elements import Elements
 from validation.references.interaction import Floats
 from validation.references.maugis import Paraboloid, State, of_tabor
 from validation.row import Row, at_most, worst
-from validation.study import Bench, Findings, Refused, Study, found, said
+from validation.study import Bench, Lines, Refused, Study, found, said
 
 TABOR = (0.01, 0.03, 0.1, 0.3, 0.5, 1.0, 3.0, 10.0, 30.0, 100.0)
 ASKED, FINE = 1e-3, 1e-5
@@ -47,12 +48,13 @@ SHARPNESS, FULL_SHARPNESS = (1.0,), (0.1, 1.0, 5.0)
 MAUGIS, THREE_D, QUADRATURE = "Maugis's equations", "boundary elements", "Dugdale's contact by quadrature"
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """The paraboloid, the shapes, random scenes."""
-    rows = [row for mu in TABOR for row in _paraboloid(bench, mu)]
-    sharpness = FULL_SHARPNESS if bench.full else SHARPNESS
-    rows += [row for name, solid in shapes().items() for mu in sharpness for row in _shape(bench, name, mu, *solid)]
-    return Findings([*rows, *random_plane.random_rows(bench, random_plane.COHESIVE, QUADRATURE)])
+    for mu in TABOR:
+        yield from _paraboloid(bench, mu)
+    for mu, (name, solid) in product(FULL_SHARPNESS if bench.full else SHARPNESS, shapes().items()):
+        yield from _shape(bench, name, mu, *solid)
+    yield from random_plane.random_rows(bench, random_plane.COHESIVE, QUADRATURE)
 
 
 def scene(solid: Surface, contact: Cohesive | Paraboloid, spacing: float, tolerance: float, experiment: Scene) -> Scene:
@@ -61,7 +63,7 @@ def scene(solid: Surface, contact: Cohesive | Paraboloid, spacing: float, tolera
     return solid.tables(spacing, tolerance) | {"adhesion": adhesion, "experiment": experiment}
 
 
-def _paraboloid(bench: Bench, mu: float) -> list[Row]:
+def _paraboloid(bench: Bench, mu: float) -> Lines:
     """Marks, the curve from a contact of twice a₁ to where it ends, and both limits, of one µ."""
     one, words, solid = (
         of_tabor(mu, RADIUS, 1.0, WORK),
@@ -84,18 +86,18 @@ def _paraboloid(bench: Bench, mu: float) -> list[Row]:
         return one.state(reduced.of_radius(a / one.unit_radius) if a > 0.0 else reduced.alone(c / one.unit_radius))
 
     exact = {"adhesion_force": -critical.load, "zero_load_radius": free.a, "cohesive_radius": free.c}
-    rows = [_off(words, pulled, name, value) for name, value in exact.items()]
-    rows += [*_compared(words, path, of, one.unit_force, MAUGIS),
-             _off(words, path, "fixed_grips_displacement", last.displacement)]  # fmt: skip
+    for name, value in exact.items():
+        yield _off(words, pulled, name, value)
+    yield from _compared(words, path, of, one.unit_force, MAUGIS)
+    yield _off(words, path, "fixed_grips_displacement", last.displacement)
     if mu == TABOR[0]:
         off = abs(0.5 * _value(pulled, "adhesion_force") / one.unit_force - 1.0)
-        rows.append(at_most(f"{words}: F_A over that of DMT, 2πWR, less 1", off, DMT, "DMT"))
+        yield at_most(f"{words}: F_A over that of DMT, 2πWR, less 1", off, DMT, "DMT")
     if reduced.parameter >= SOFT:
         run = bench.run(f"fine_{mu:g}", scene(solid, one, spacing, FINE, pull))
         excess = (_value(run, "adhesion_force") / (1.5 * one.unit_force) - 1.0) * reduced.parameter**2
         name, limited = f"{words}: (F_A/F_JKR − 1) λ² over {EXCESS:g}, less 1", f"the next order; F_A to {FINE:g}"
-        rows.append(at_most(name, abs(excess / EXCESS - 1.0), reduced.parameter**-NEXT, MAUGIS, said(limited, run)))
-    return rows
+        yield at_most(name, abs(excess / EXCESS - 1.0), reduced.parameter**-NEXT, MAUGIS, said(limited, run))
 
 
 def shapes() -> dict[str, tuple[Surface, Callable[[Floats], Floats]]]:

@@ -11,11 +11,12 @@ from itertools import pairwise
 from typing import Any
 
 from validation.hard import expected_in_time
-from validation.hard.judge import Case, Expected, Function
+from validation.hard.judge import Case, Expected
 from validation.hard.surfaces import ROUND, Surface
 from validation.hard.units import MODEL, Scene, Units
 from validation.references.axisymmetric import Contact, Slipping, lost_on_path
 from validation.references.dugdale import Cohesive, State
+from validation.references.numerics import Function, Pair
 
 Numbers = dict[str, Any]
 """By name, and p(r) by the names of states."""
@@ -91,7 +92,7 @@ def points_of(displacements: Scene | Sequence[float]) -> list[float]:
     return there + there[-2::-1] if displacements.get("return", True) else there
 
 
-def deepest(contact: Contact, experiment: Scene, guess: float) -> tuple[float, float]:
+def deepest(contact: Contact, experiment: Scene, guess: float) -> Pair:
     """a and d of the largest load of an experiment."""
     punch = math.isfinite(contact.body.end)
     for name in ("force", "preload", "normal_force"):
@@ -102,7 +103,7 @@ def deepest(contact: Contact, experiment: Scene, guess: float) -> tuple[float, f
     return contact.body.end if punch else contact.radius_at(d, guess), d
 
 
-def pressures(contact: Contact, **states: tuple[float, float]) -> dict[str, Function]:
+def pressures(contact: Contact, **states: Pair) -> dict[str, Function]:
     """p(r) of states (a, d) whose body has no kink inside, by their names among the numbers."""
     body = contact.body
 
@@ -249,7 +250,7 @@ def _pressure(contact: Cohesive, at: State) -> Function:
     return lambda r: -contact.stress if r >= at.a else contact.pressure(r, at) if r else middle
 
 
-def _along(contact: Cohesive, ends: tuple[float, float], closed: bool) -> Numbers:
+def _along(contact: Cohesive, ends: Pair, closed: bool) -> Numbers:
     """The marks that the last unloading passes, and what jumps lose."""
     exact, outwards = {}, ends[1] < ends[0]
     touched, last, (low, high) = contact.touched, contact.snap_out, sorted(ends)

@@ -12,11 +12,11 @@ from itertools import groupby, pairwise
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from validation.hard.judge import Curve, Expected, Function
+from validation.hard.judge import Curve, Expected
 from validation.hard.surfaces import Surface, power
 from validation.hard.units import Scene
 from validation.references import axisymmetric, creeping, dashpots, impact, line_load
-from validation.references.interaction import Floats
+from validation.references.numerics import Floats, Function
 from validation.references.receding_edge import Path, Receding, path
 from validation.references.recovering import Followed, Prony, Retarded, evenly, followed
 from validation.references.relaxing import (

@@ -12,7 +12,7 @@ from validation.hard.cases import TENSION, PairCase, shaped
 from validation.hard.judge import Case, Expected, judged
 from validation.hard.units import Scene
 from validation.row import Row, tables_beside
-from validation.study import Bench, Findings, Study, claim_row
+from validation.study import Bench, Lines, Study, claim_row
 
 RADII = (1.0, 1e3, 1e6, 1e9)
 FORMS = tables_beside(__file__)
@@ -39,12 +39,12 @@ def on_plane(full: bool) -> Iterator[Case]:
         yield Case(words, words, words, scene, Expected({"largest_force": force}))
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """One row for each extreme."""
     source = "Σ k (d − x²/R), N k d"
-    rows = [judge.near(f"on a plane, {words}", "largest_force", PLANE, source)
-            for words, judge in judged(bench, on_plane(bench.full)).items()]  # fmt: skip
-    return Findings([*rows, *_springs(bench)])
+    for words, judge in judged(bench, on_plane(bench.full)).items():
+        yield judge.near(f"on a plane, {words}", "largest_force", PLANE, source)
+    yield from _springs(bench)
 
 
 def _springs(bench: Bench) -> Iterator[Row]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from validation.doors import shipped
 from validation.row import so
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 COMMAND = (sys.executable, "-m", "contact1d", "run")
 MOST = 1800.0
@@ -19,7 +19,7 @@ MOST = 1800.0
 RESULTS, TORN = "results.json", "torn"
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """All three kinds; the reference is the same run undisturbed, whose phases and files are those of the others."""
     scene, whole = shipped("scenes/pull_off.toml"), bench.folder / "undisturbed"
     phases = _start(scene, whole).communicate(timeout=MOST)[1].splitlines()
@@ -28,17 +28,17 @@ def measure(bench: Bench) -> Findings:
     moments = [(phases.index(line) + 1, "", f'at "{line.split(":")[0]}"') for line in dict.fromkeys(phases)]
     moments += [(0, name, f"when {name} appears") for name in (sizes if bench.full else [RESULTS])]
     same = "the same scene undisturbed, to the last digit"
-    rows = [so(f"killed {words}: a torn results.json, or another F_A when it is run again in that folder",
-               _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), same)
-            for index, name, words in moments]  # fmt: skip
+    for index, name, words in moments:
+        what = f"killed {words}: a torn results.json, or another F_A when it is run again in that folder"
+        yield so(what, _killed(scene, bench.folder / f"killed_{index}_{name}", index, name, undisturbed), same)
     for name, size in sizes.items():
         run = bench.folder / f"full_{max(0, size - 1)}"
         code, words = _end(_start(scene, run, max(0, size - 1)))
         bad = code not in (0, 2, 3) or "Traceback" in words or (code == 0 and _force(run) != undisturbed)
         what = f"disk full at the last byte of {name}: a traceback, another exit code than 0, 2, 3, another F_A"
-        rows.append(so(what, bad, f"exit 0, 2 or 3 and no traceback; it is {code}"))
+        yield so(what, bad, f"exit 0, 2 or 3 and no traceback; it is {code}")
     refused = "second run in a folder at work that is not refused with exit 2"
-    return Findings([*rows, so(refused, _second(scene, bench.folder / "two"), "one run for each folder")])
+    yield so(refused, _second(scene, bench.folder / "two"), "one run for each folder")
 
 
 def _killed(scene: Path, run: Path, lines: int, file: str, undisturbed: Any) -> bool:

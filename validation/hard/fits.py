@@ -16,7 +16,7 @@ import numpy as np
 from validation.doors import Contact1dError, cores, fit, fit_many
 from validation.references.force_curves import Sphere, measured, noise
 from validation.row import Row, at_least, at_most, tables_beside
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 MODULUS, WORK, RADIUS, POINT = 2e6, 0.05, 5e-6, 3e-7
 """E* [Pa], W [J/m²], R [m], contact point [m]."""
@@ -112,45 +112,44 @@ def write_map(group: Group, seeds: range, folder: Path) -> Path:
     return write(group, places, "curve,x [µm],y [µm],", folder / "map.csv")
 
 
-def covered(table: Path, group: Group) -> Iterator[tuple[str, bool]]:
-    """Of each curve and parameter whether its interval covers."""
-    with table.open(encoding="utf-8", newline="") as file:
-        for row in csv.DictReader(file):
-            for name, exact in group.parameters.items():
-                ends = [
-                    next((v for k, v in row.items() if k.startswith(f"{name}_{end} ")), "") for end in ("low", "high")
-                ]
-                yield name, all(ends) and float(ends[0]) <= exact <= float(ends[1])
+def lines_of(plan: dict[str, Any], folder: Path) -> Iterator[dict[str, str]]:
+    """The lines of fits.csv of a fit of many curves, each as a dict by column."""
+    done = fit_many(plan, folder / "fits", workers=cores())
+    with (done.folder / "fits.csv").open(encoding="utf-8", newline="") as file:
+        yield from csv.DictReader(file)
 
 
-def measure(bench: Bench) -> Findings:
+def covers(row: Mapping[str, str], name: str, exact: float) -> bool:
+    """Whether the interval of a number of a line holds its value."""
+    ends = [next((v for k, v in row.items() if k.startswith(f"{name}_{end} ")), "") for end in ("low", "high")]
+    return all(ends) and float(ends[0]) <= exact <= float(ends[1])
+
+
+def measure(bench: Bench) -> Lines:
     """Coverage, choice of the model, and time."""
-    rows, named, all_of = [], list[bool](), dict[str, list[bool]]()
+    named, all_of = list[bool](), dict[str, list[bool]]()
     for i, group in enumerate(GROUPS):
-        folder = bench.folder / f"group_{i}"
-        count = FULL_CURVES if bench.full else CURVES
-        curves = write_map(group, range(1000 * i, 1000 * i + count), folder)
-        done = fit_many(group.plan(curves), folder / "fits", workers=cores())
-        with (done.folder / "fits.csv").open(encoding="utf-8", newline="") as file:
-            named += [bool(row.get("hysteresis")) for row in csv.DictReader(file)]
-        for name, inside in covered(done.folder / "fits.csv", group):
-            all_of.setdefault(name, []).append(inside)
+        folder, first = bench.folder / f"group_{i}", 1000 * i
+        curves = write_map(group, range(first, first + (FULL_CURVES if bench.full else CURVES)), folder)
+        for row in lines_of(group.plan(curves), folder):
+            named.append(bool(row.get("hysteresis")))
+            for name, exact in group.parameters.items():
+                all_of.setdefault(name, []).append(covers(row, name, exact))
     for name, found in all_of.items():
         share, words = float(np.mean(found)), f"share of {len(found)} intervals of {name} that cover"
-        rows.append(at_least(words, share, LEAST, SOURCE))
+        yield at_least(words, share, LEAST, SOURCE)
         if bench.full:
-            rows.append(at_most(words, share, MOST, SOURCE))
+            yield at_most(words, share, MOST, SOURCE)
     words = f"share of {len(named)} curves without hysteresis in which one is named"
-    rows.append(at_most(words, float(np.mean(named)), 0.03, SOURCE))
-    rows += _choices(bench)
+    yield at_most(words, float(np.mean(named)), 0.03, SOURCE)
+    yield from _choices(bench)
     count = FULL_MAP if bench.full else MAP
     folder = bench.folder / "map"
     curves = write_map(GROUPS[1], range(count), folder)
     begin = time.perf_counter()
     fit_many(GROUPS[1].plan(curves), folder / "fits", workers=cores())
     minutes = (time.perf_counter() - begin) / 60.0
-    rows.append(at_most(f"minutes for a map of 1000 curves, from {count}", minutes * 1000 / count, 10.0, "set bound"))
-    return Findings(rows)
+    yield at_most(f"minutes for a map of 1000 curves, from {count}", minutes * 1000 / count, 10.0, "set bound")
 
 
 def _choices(bench: Bench) -> Iterator[Row]:

@@ -15,7 +15,7 @@ from pathlib import Path
 from validation import doors
 from validation.doors import RunError, SceneError, SettingsError, read_scene
 from validation.row import at_most
-from validation.study import Bench, Findings, LateError, Study, at_most_seconds
+from validation.study import Bench, LateError, Lines, Study, at_most_seconds
 
 QUICK, FULL = 2_000, 20_000
 EVERY = 100
@@ -29,7 +29,7 @@ VALUES = '0 -1 1e-300 1e300 1e20 1e-6 1e6 nan inf -inf true "auto" "x" [] {} 3 1
 TRACEBACK = "a traceback"
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """How many scenes end how; one row for each way that must not be."""
     count = FULL if bench.full else QUICK
     ends, worst = Counter[str](), dict[str, str]()
@@ -40,10 +40,10 @@ def measure(bench: Bench) -> Findings:
     bad = {end: number for end, number in ends.items() if end.startswith(TRACEBACK)}
     said = "; ".join(f"{number} × {worst[end]}" for end, number in bad.items()) or "–"
     source, late = "a deck, a result or a sentence", f"neither deck nor sentence after {SLOW} s"
-    return Findings([
+    return [
         at_most(f"tracebacks of {count} random scenes", sum(bad.values()), 0.0, source, said, "set bound"),
         at_most(f"of {count} random scenes, those that are {late}", ends["late"], 0.0, source, evidence="set bound"),
-    ])  # fmt: skip
+    ]  # fmt: skip
 
 
 def _piece(folder: Path, seed: int) -> Iterator[tuple[str, str]]:

@@ -12,7 +12,7 @@ from validation.hard.judge import Case, Number, absolute, judged
 from validation.references.impact import Adhesive, elastic
 from validation.references.receding_edge import Receding
 from validation.references.relaxing import KelvinVoigt, Legs, Power, sphere
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 PARTICLES = 40.0
 """In the radius of the elastic impact, or in that at d = 0; E* = R = m = v = 1."""
@@ -91,22 +91,21 @@ def squared(n: Number) -> float:
     return abs(n.value**2 - n.reference**2)
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Elastic, of Kelvin and Voigt, relaxing, adhesive; then the edge; then random scenes of all."""
-    rows = []
     for words, judge in judged(bench, cases()).items():
         source = EDGE if "edge" in words or "velocity" in words else ENERGY if words.startswith("adhesive") else MOTION
-        rows += judge.rows(words, source)
+        yield from judge.rows(words, source)
         if words == "pull-off at a velocity":
-            rows.append(judge.near(words, "adhesion_force", TENSION, source))
+            yield judge.near(words, "adhesion_force", TENSION, source)
         elif words.startswith("history"):
-            rows.append(judge.curve(words, "force", TENSION, source, "the largest tension"))
+            yield judge.curve(words, "force", TENSION, source, "the largest tension")
         elif words.startswith("adhesive"):
-            rows.append(judge.near(f"{words}, e²", "restitution", SQUARE, source, squared))
+            yield judge.near(f"{words}, e²", "restitution", SQUARE, source, squared)
         else:
             bound = STILL if words.startswith("elastic") else RESTITUTION
-            rows.append(judge.near(words, "restitution", bound, source, absolute))
-    return Findings([*rows, *random_plane.random_rows(bench, random_plane.IMPACTS, MOTION)])
+            yield judge.near(words, "restitution", bound, source, absolute)
+    yield from random_plane.random_rows(bench, random_plane.IMPACTS, MOTION)
 
 
 IMPACTS = Study(

@@ -14,7 +14,7 @@ import numpy as np
 
 from validation.doors import Run, read_run
 from validation.hard.units import MODEL, Scene, Units
-from validation.references.interaction import Floats
+from validation.references.numerics import Floats, Function
 from validation.row import Row, at_most, worst
 from validation.study import LONGEST, Bench, Refused, over_uncertainty
 
@@ -45,7 +45,6 @@ OUTSIDE, FARTHEST = 0.02, 3.0
 refused; the largest error."""
 REFUSED = 0.05
 """The same shares of scenes of particles that interact."""
-Function = Callable[[float], float]
 
 
 @dataclass(frozen=True)

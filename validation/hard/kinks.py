@@ -16,7 +16,7 @@ from validation.hard.surfaces import KINKED, Surface, kinked_body, pieces, surfa
 from validation.hard.units import Scene, Units
 from validation.references.axisymmetric import Body, Contact, with_rest_radius
 from validation.row import tables_beside
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 SOURCE = "the MDR by quadrature of the body"
 LAND, REACH, SLOPE = 10.0, 60.0, 0.02
@@ -86,14 +86,14 @@ def tables(full: bool) -> Iterator[Case]:
             yield looked_up(f"rounded_{words}_{digits}", group, words, solid, solid.tables(0.5) | more)
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Rows of each body with a kink."""
-    return Findings(rows_of(judged(bench, kinks(bench.full)), SOURCE))
+    return rows_of(judged(bench, kinks(bench.full)), SOURCE)
 
 
-def measure_tables(bench: Bench) -> Findings:
+def measure_tables(bench: Bench) -> Lines:
     """Rows of each table."""
-    return Findings(rows_of(judged(bench, tables(bench.full)), SOURCE))
+    return rows_of(judged(bench, tables(bench.full)), SOURCE)
 
 
 CLASSES = (

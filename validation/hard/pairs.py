@@ -13,7 +13,7 @@ from validation.hard.cases import CAPACITY, PAIRS, TENSION, PairCase, reach, sha
 from validation.hard.judge import OF_ALL, REFUSED, Case, Judge, judged
 from validation.hard.units import Scene
 from validation.row import at_most, tables_beside
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 TOLERANCES = (1e-2, 1e-3, 1e-4)
 SHAPES = (("flat_punch", 3), ("flat_punch", 10), ("cone", 9), ("parabola", 21), ("power", 40), ("parabola", 200))
@@ -91,22 +91,23 @@ def _sharp(rng: np.random.Generator, case: PairCase, kind: str, timed: bool) -> 
     return replace(case, more=tables).judged(group, words, exact)
 
 
-def measure_stiffness(bench: Bench) -> Findings:
+def measure_stiffness(bench: Bench) -> Lines:
     """Rows of F_A, ratio by ratio; of the refusals of all."""
     source, every = f"{PAIRS}, by bisection and Newton's method", judged(bench, stiffnesses(bench.full))
-    rows = [row for words, judge in every.items() for row in judge.rows(words, source)[:-1]]
+    for words, judge in every.items():
+        yield from judge.rows(words, source)[:-1]
     refused = sum(len(judge.refused) for judge in every.values())
     count = sum(judge.scenes.total() for judge in every.values())
     words = f"share refused of {count} cases that have a stable way below {CAPACITY} of the core's force"
-    return Findings([*rows, at_most(words, refused / count, REFUSED, "what is asked: 95 % must run")])
+    yield at_most(words, refused / count, REFUSED, "what is asked: 95 % must run")
 
 
-def measure_sharp(bench: Bench) -> Findings:
+def measure_sharp(bench: Bench) -> Lines:
     """Rows of all random scenes."""
     judge = Judge(OF_ALL)
     for case in sharp(FULL_SHARP if bench.full else SHARP):
         judge.add(case, case.run(bench))
-    return Findings(judge.rows("random sharp scenes", PAIRS, REFUSED))
+    return judge.rows("random sharp scenes", PAIRS, REFUSED)
 
 
 CLASSES = (

@@ -3,7 +3,7 @@
 from validation.hard.draws import RandomClass
 from validation.hard.judge import OUTSIDE, Judge
 from validation.row import Row, tables_beside
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 SOURCE, TING = "the MDR by quadrature of the body", "Lee, Radok and Ting"
 CLASSES = [RandomClass(name, **table) for name, table in tables_beside(__file__).items()]
@@ -18,9 +18,9 @@ def random_rows(bench: Bench, of: RandomClass, source: str) -> list[Row]:
     return judge.rows(f"random scenes of seed {of.seed}", source, OUTSIDE)
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Rows of the random scenes."""
-    return Findings(random_rows(bench, PLANE, SOURCE))
+    return random_rows(bench, PLANE, SOURCE)
 
 
 RANDOM_PLANE = Study(

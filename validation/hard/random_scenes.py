@@ -13,7 +13,7 @@ from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
 from validation.references.solver import ChainSolver, State
 from validation.references.tension_radius import band_limited_radius
-from validation.study import Bench, Findings, Refused, Study
+from validation.study import Bench, Lines, Refused, Study
 
 QUICK, FULL = 10, 200
 SEED = 20071
@@ -29,7 +29,7 @@ APART = 12.0
 """Where a path begins and ends, over the range of the attraction."""
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Rows of all of them; chains of the reference that buckle through each other are a scene that nothing carries."""
     random, judge = Random(SEED), Judge(OF_ALL)
     for number in range(FULL if bench.full else QUICK):
@@ -45,7 +45,7 @@ def measure(bench: Bench) -> Findings:
                 near = run.results["displacement"].value if "displacement" in run.results else 0.0
             exact = exact_results(scene, model_of(scene, particles), near)
             judge.add(Case(name, group, group, scene, Expected(exact, SOLVER)), run)
-    return Findings(judge.rows("random scenes", "the independent solver", REFUSED))
+    return judge.rows("random scenes", "the independent solver", REFUSED)
 
 
 def varied(scene: Scene, random: Random) -> Scene:

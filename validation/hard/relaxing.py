@@ -17,7 +17,7 @@ from validation.hard.draws import history, terms_of
 from validation.hard.judge import Case, judged
 from validation.references.relaxing import Flat, Indentation, KelvinVoigt, Legs, Material, Power
 from validation.row import Row, at_least, tables_beside
-from validation.study import Bench, Findings, Refused, Study
+from validation.study import Bench, Lines, Refused, Study
 
 RADIUS, DEPTH = 30.0, 1.0
 """a and d of the deepest contact [LU]; E* = 1 FU/LU²."""
@@ -88,18 +88,18 @@ def cases(full: bool) -> Iterator[Case]:
     )
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Each kind of history, then random ones."""
-    rows = []
     for words, judge in judged(bench, cases(bench.full)).items():
         source = next((source for word, source in SOURCES.items() if words.startswith(word)), TING)
-        rows += judge.rows(words, source)
-        rows += [judge.curve(words, column, PUNCHED if words == "punch" else expected_in_time.ALONG, source)
-                 for column in judge.along if "automatic" not in words]  # fmt: skip
+        yield from judge.rows(words, source)
+        for column in judge.along if "automatic" not in words else ():
+            yield judge.curve(words, column, PUNCHED if words == "punch" else expected_in_time.ALONG, source)
         if "spacing given" in words:
-            rows.append(judge.near(words, "peak_force", expected_in_time.ALONG, source))
-    rows += [_order(bench, name, law) for name, law in MATERIALS.items()]
-    return Findings([*rows, *random_plane.random_rows(bench, random_plane.RELAXING, TING)])
+            yield judge.near(words, "peak_force", expected_in_time.ALONG, source)
+    for name, law in MATERIALS.items():
+        yield _order(bench, name, law)
+    yield from random_plane.random_rows(bench, random_plane.RELAXING, TING)
 
 
 def _order(bench: Bench, name: str, law: Material) -> Row:

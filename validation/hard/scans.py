@@ -21,7 +21,7 @@ from validation.references import force_curves
 from validation.references.axisymmetric import Contact
 from validation.references.numerics import Floats
 from validation.row import Row, at_most
-from validation.study import Bench, Findings, Refused, Study
+from validation.study import Bench, Lines, Refused, Study
 
 SEEDS, FULL_SEEDS, FIRST_SEED = 10, 50, 20261125
 """How many noises, and the first of them: none that the method was made with."""
@@ -130,23 +130,22 @@ def cases(full: bool) -> Iterator[Case]:
             yield Case(words, None, ends, 1.0, 3.0, memory, 0.0, keys | ways["smooth"], gaussian="Gauss" in words)
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Rows of each case, and of its first seed on LAMMPS."""
-    rows = []
     for case in cases(bench.full):
         seeds = range(FIRST_SEED, FIRST_SEED + (FULL_SEEDS if bench.full else SEEDS))
         found = [modelled(read_scene(case.scene(seed))) for seed in seeds]
         exact = [*map(case.exact, seeds)]
         for name in exact[0]:
-            rows += judged(case, name, [one[name] for one in found], np.asarray([one[name] for one in exact]))
+            yield from judged(case, name, [one[name] for one in found], np.asarray([one[name] for one in exact]))
         run = bench.run(case.words.replace(" ", "_").replace(",", ""), case.scene(FIRST_SEED))
         apart = [math.inf]
         if not isinstance(run, Refused):
             pairs = [(run.results[name].value, found[0][name]) for name in exact[0]]
             apart = [abs(value - one.value) / one.uncertainty for value, one in pairs]
         words = f"{case.words}: largest difference of LAMMPS from the reduced model over the uncertainty"
-        rows.append(at_most(words, max(apart), SAME, "the same chain, whose edge is found otherwise"))
-    return Findings([*rows, *flats(range(FIRST_SEED, FIRST_SEED + FLATS))])
+        yield at_most(words, max(apart), SAME, "the same chain, whose edge is found otherwise")
+    yield from flats(range(FIRST_SEED, FIRST_SEED + FLATS))
 
 
 def flats(seeds: Iterable[int]) -> Iterator[Row]:
@@ -160,17 +159,16 @@ def flats(seeds: Iterable[int]) -> Iterator[Row]:
         yield at_most(f"noise alone, {keys}: accepted scans", accepted, 0, "it has no curvature")
 
 
-def judged(case: Case, name: str, found: list[Quantity], exact: Floats) -> list[Row]:
+def judged(case: Case, name: str, found: list[Quantity], exact: Floats) -> Lines:
     """How many are within their uncertainties, and how wide these are."""
     off = np.abs([one.value for one in found] - exact) / exact
     spread = np.asarray([one.uncertainty for one in found]) / exact
     outside, width = float(np.mean(off > spread)), float(np.median(spread) / np.median(off))
     said = f"median uncertainty {np.median(spread):.1e} of it"
-    rows = [at_most(f"{case.words}: share of {len(found)} values of {name} outside", outside, OUTSIDE, SOURCE, said)]
+    yield at_most(f"{case.words}: share of {len(found)} values of {name} outside", outside, OUTSIDE, SOURCE, said)
     if name in ("displacement", "adhesion_force") or case.land is None:
         words = f"{case.words}: median uncertainty of {name} over its median error"
-        rows.append(at_most(words, width, WIDEST_LAND if case.land is None else WIDEST, SOURCE, said))
-    return rows
+        yield at_most(words, width, WIDEST_LAND if case.land is None else WIDEST, SOURCE, said)
 
 
 SCANS = Study(

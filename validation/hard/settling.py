@@ -18,7 +18,7 @@ from validation.hard.cases import ATTRACTION, LAW, PairCase, reach, shaped
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats
 from validation.row import Reference, Row, at_most, relative
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 RATIO, PARTICLES, TOLERANCE = 0.5, 41, 1e-5
 SHARES, FULL_SHARES = (1e-2, 1e-3, 1e-4), (1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5, 1e-5)
@@ -41,7 +41,7 @@ LOOKS = 300
 SOURCE = "motion of plate and pairs in closed form, by scipy"
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Both times at each share against the reduced motion, and their exponents."""
     case = PairCase("settling", RATIO, shaped("parabola", PARTICLES, reach(RATIO)), PARTICLES, 0.0, TOLERANCE, True)
     each = math.sqrt(case.stiffness)
@@ -49,7 +49,6 @@ def measure(bench: Bench) -> Findings:
     pairs, shares = case.pairs, np.array(FULL_SHARES if bench.full else SHARES)
     largest, fold = pairs.adhesion(0.0)
     near, begin = shares <= NEAR, _place(pairs, -START * largest, fold)
-    checks = []
     for words, sign in (("settle", -1.0), ("part", 1.0)):
         found = []
         for share in shares.tolist():
@@ -76,15 +75,12 @@ def measure(bench: Bench) -> Findings:
                         break
                     last = place
             found.append(taken)
-            checks.append(
-                Row(f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, Reference(expected, SOURCE),
-                    relative(TIMES, "particles that lag behind; the table's share of F_A"), unit="TU")
-            )  # fmt: skip
+            yield Row(f"time to {words} under (1 {'+−'[sign < 0]} {share:g}) F_A", taken, Reference(expected, SOURCE),
+                      relative(TIMES, "particles that lag behind; the table's share of F_A"), unit="TU")  # fmt: skip
         slope = np.polyfit(np.log(shares[near]), np.log(np.maximum(found, 1e-300)[near]), 1)[0]
         name = f"exponent of the time to {words} over |1 − W/F_A|, from −1/2"
         source, limit = "the fold: inverse square root", "next term of the fold"
-        checks.append(at_most(name, abs(slope + 0.5), EXPONENT, source, limit))
-    return Findings(checks)
+        yield at_most(name, abs(slope + 0.5), EXPONENT, source, limit)
 
 
 def _place(pairs: FoldedPairs, load: float, fold: float) -> float:

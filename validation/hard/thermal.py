@@ -12,7 +12,7 @@ from validation.references.boltzmann_pairs import BoltzmannPairs
 from validation.references.folded_pairs import FoldedPairs
 from validation.references.interaction import Floats, PairInteraction
 from validation.row import Reference, Row, at_most, claim
-from validation.study import Bench, Findings, Refused, Study, claim_row, found, over_claim, said
+from validation.study import Bench, Lines, Refused, Study, claim_row, found, over_claim, said
 
 SIGMAS = 4.0
 """Standard errors of the sample: one row in 16 000 fails by chance, and the seeds are fixed."""
@@ -45,36 +45,33 @@ def thermal_scene(temperature: float, seed: int, tolerance: float = 2e-3) -> Sce
     return scene
 
 
-def measure_boltzmann(bench: Bench) -> Findings:
+def measure_boltzmann(bench: Bench) -> Lines:
     """⟨d⟩ under a load at three temperatures, how much of it is thermal, and the variance of d in time."""
     rest = FoldedPairs(LAW_HERE, 0.83, HEIGHTS).deepest(LOAD)
     still = bench.run("rest", thermal_scene(0.0, 0))
-    rows = [claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")]
+    yield claim_row("d at kT = 0 off over its claim", still, "displacement", rest, "independent pairs")
     source, limit = "Boltzmann's integral over distances and plate", LIMIT
     for kT in TEMPERATURES:
         exact, swing = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, kT).displacement(LOAD, NEAR, WIDTH[kT])
         run = bench.run(f"noise_{kT:g}", thermal_scene(kT, 3))
         off = over_claim(run, "displacement", exact)
-        rows.append(at_most(f"d at kT = {kT:g} off over its claim", off, SIGMAS, source, said(limit, run)))
+        yield at_most(f"d at kT = {kT:g} off over its claim", off, SIGMAS, source, said(limit, run))
         if isinstance(run, Refused):
             continue
         d = found(run, "displacement")
         if kT > TEMPERATURES[0]:  # there the mean cannot tell the temperature from 0, and the variance does
-            rows.append(
-                Row(f"d(kT = {kT:g}) − d(0)", d.value - rest, Reference(exact - rest, source), claim(limit),
-                    uncertainty=SIGMAS * d.uncertainty, unit="LU")
-            )  # fmt: skip
+            yield Row(f"d(kT = {kT:g}) − d(0)", d.value - rest, Reference(exact - rest, source), claim(limit),
+                    uncertainty=SIGMAS * d.uncertainty, unit="LU")  # fmt: skip
         # It tells the temperature where the mean does not.
         sampled = np.asarray(run.curve.displacement)[FORGOTTEN:]
         squares = (sampled - sampled.mean()) ** 2 / swing**2
         error = np.std([block.mean() for block in np.array_split(squares, BLOCKS)], ddof=1) / math.sqrt(BLOCKS)
         name = f"variance of d in time at kT = {kT:g} off over its standard error"
-        rows.append(at_most(name, abs(squares.mean() - 1.0) / error, SIGMAS, "Boltzmann's integral",
-                            f"statistics: {sampled.size} samples, ± {error:.2g}"))  # fmt: skip
-    return Findings(rows)
+        yield at_most(name, abs(squares.mean() - 1.0) / error, SIGMAS, "Boltzmann's integral",
+                            f"statistics: {sampled.size} samples, ± {error:.2g}")  # fmt: skip
 
 
-def measure_seeds(bench: Bench) -> Findings:
+def measure_seeds(bench: Bench) -> Lines:
     """(d − exact)/claim of each seed: its χ² neither too large nor too small."""
     count, temperature = 24 if bench.full else 6, TEMPERATURES[0]
     exact, _ = BoltzmannPairs(LAW_HERE, 0.83, HEIGHTS, temperature).displacement(LOAD, NEAR, WIDTH[temperature])
@@ -87,11 +84,11 @@ def measure_seeds(bench: Bench) -> Findings:
     least = chi2.ppf(CHANCE, count) / square
     # The errors are known from BLOCKS blocks only: each is an F-variable.
     most = chi2.ppf(1.0 - CHANCE, count) * (BLOCKS - 1) / (BLOCKS - 3)
-    return Findings([
+    return [
         at_most(f"χ² {words} by their claims: not too large", square, most, source, limit),
         at_most(f"least χ² that chance allows over χ² {words}: claims not too wide", least, 1.0, source, limit),
         at_most(f"mean {words} off, in standard errors of it", mean, SIGMAS, source, limit),
-    ])  # fmt: skip
+    ]  # fmt: skip
 
 
 CLASSES = (

@@ -12,7 +12,7 @@ and F of any profile g(x): h² B₂ c [g′(a) + g′(0)], with the layer's stif
 """
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,8 +22,9 @@ from validation.doors import Reduction, Run, Scene, read_scene
 from validation.figures import Values
 from validation.references import hertz
 from validation.references.mdr import ReducedContact
+from validation.references.numerics import Function, Pair
 from validation.row import Known, Reference, Row, claim, printed, relative, tables_beside
-from validation.study import Bench, Findings, Rows, Scenes, Study, found
+from validation.study import Bench, Findings, Lines, Rows, Scenes, Study, found
 
 MODULUS = 210e9
 """Young's modulus of both bodies [Pa]."""
@@ -51,7 +52,7 @@ def pressed(
     title: str,
     reduction: Reduction,
     R: float,
-    materials: Iterable[tuple[float, float]],
+    materials: Iterable[Pair],
     experiment: Any,
     bodies: Any,
     **more: Any,
@@ -127,7 +128,7 @@ class Case:
             return 0.25 * fineness**2
         return 2.5 * math.sqrt(3.0) / 36.0 * fineness**3 + fineness**4 / 16.0
 
-    def sphere(self) -> tuple[float, float]:
+    def sphere(self) -> Pair:
         """Effective radius [m] and contact modulus [Pa]: R/2 and G/(1 − ν) for two equal spheres."""
         radius = self.values["R"] * LENGTH_UNIT / FACTORS[self.reduction]
         return radius, MODULUS / (2.0 * (1.0 - self.values["nu"] ** 2))
@@ -161,7 +162,7 @@ def scenes(_: Scene) -> Scenes:
     return {case.name: case.scene() for case in swept + rates} | shapes | drawn
 
 
-def ratio(case: Case, run: Run, what: str) -> tuple[float, float]:
+def ratio(case: Case, run: Run, what: str) -> Pair:
     """The run's "force" or "energy" over the sphere's, and its claim."""
     force = run.document["largest_force"]["si"]
     claim = float(force["uncertainty"] / force["value"])
@@ -211,43 +212,36 @@ def judge(bench: Bench) -> Findings:
     return Findings(rows, text=finding)
 
 
-def _sweep_checks(row: Rows, reduction: Reduction, name: str) -> list[Row]:
+def _sweep_checks(row: Rows, reduction: Reduction, name: str) -> Lines:
     """Of the runs in which one value changes the one that is farthest off for what its lattice allows."""
     cases = sweep(reduction, name)
-    checks = []
     for what, source in (("force", "F = dU/dd"), ("energy", "Eq. (1)")):
         each = [(*ratio(case, row.runs[case.name], what), case.off(what)) for case in cases]
         value, claim, bound = max(each, key=lambda one: abs(one[0] - 1.0) / (one[1] + one[2]))
-        checks.append(
-            row(f"{what} over Hertz's, worst of {len(cases)} for its lattice: {WORDS[name]} ({reduction})", value,
-                Reference(1.0, f"Hertz in SI, {source}"), relative(bound + claim, LATTICE), uncertainty=claim,
-                on=[case.name for case in cases], wide=BY_CHANCE, standing="repeats" if name == "R" else "judged")
-        )  # fmt: skip
-    return checks
+        yield row(f"{what} over Hertz's, worst of {len(cases)} for its lattice: {WORDS[name]} ({reduction})", value,
+                  Reference(1.0, f"Hertz in SI, {source}"), relative(bound + claim, LATTICE), uncertainty=claim,
+                  on=[case.name for case in cases], wide=BY_CHANCE,
+                  standing="repeats" if name == "R" else "judged")  # fmt: skip
 
 
-def _rate_checks(row: Rows, reduction: Reduction) -> list[Row]:
+def _rate_checks(row: Rows, reduction: Reduction) -> Lines:
     """Fitted orders; their uncertainty is that of the fit and of the runs, δp = Σ |c_i| claim_i/error_i."""
     cases = rate_cases(reduction)
-    checks = []
     for what, order, first in (("force", 2.0, "first"), ("energy", 4.0, "third")):
         values, claims = np.array([ratio(case, row.runs[case.name], what) for case in cases]).T
         errors = np.abs(values - 1.0)
         slope, error, spread = fitted_order([case.values["h"] for case in cases], errors, claims / errors)
-        checks.append(
-            row(
-                f"order of convergence of the {what} in the spacing ({reduction})",
-                slope,
-                Reference(
-                    order, f"Euler and Maclaurin: the first derivative at the edge that does not vanish is the {first}"
-                ),
-                claim("residual forces of the minimisation: the series of a parabola ends here"),
-                uncertainty=error + spread,
-                on=[case.name for case in cases],
-                wide="the claim takes each run at its worst, and a sum over springs in place leaves round-off",
-            )
+        yield row(
+            f"order of convergence of the {what} in the spacing ({reduction})",
+            slope,
+            Reference(
+                order, f"Euler and Maclaurin: the first derivative at the edge that does not vanish is the {first}"
+            ),
+            claim("residual forces of the minimisation: the series of a parabola ends here"),
+            uncertainty=error + spread,
+            on=[case.name for case in cases],
+            wide="the claim takes each run at its worst, and a sum over springs in place leaves round-off",
         )
-    return checks
 
 
 def fitted_order(places: Sequence[float], values: Values, claims: Values = ()) -> tuple[float, float, float]:
@@ -299,7 +293,7 @@ def _factor_checks(row: Rows) -> list[Row]:
     ]
 
 
-SLOPES: dict[str, Callable[[float], float]] = {
+SLOPES: dict[str, Function] = {
     "circle": lambda r: r / math.sqrt(200.0**2 - r**2),
     "cone": lambda r: SLOPE,
     "power": lambda r: 2.0 * EXPONENT / 40.0 * (r / 40.0) ** (EXPONENT - 1.0),

@@ -18,6 +18,7 @@ from validation.figures import Array
 from validation.paper.section2 import FACTORS, FORCE_UNIT, LENGTH_UNIT, MODULUS, fitted_order, pressed
 from validation.references.hertz import hertz_force
 from validation.references.mindlin import mindlin_force, mindlin_loop_area, raised_load_force
+from validation.references.numerics import Pair
 from validation.row import Reference, Row, absolute, relative
 from validation.study import Bench, Findings, Rows, Scenes, Study
 
@@ -47,8 +48,8 @@ class Case:
 
     name: str
     reduction: Reduction
-    moduli: tuple[float, float]
-    poisson_ratios: tuple[float, float]
+    moduli: Pair
+    poisson_ratios: Pair
 
     @property
     def ratio(self) -> float:
@@ -78,7 +79,7 @@ class Case:
                        {"spacing": SPACING} | bodies, friction={"coefficient": FRICTION})  # fmt: skip
 
 
-def stiffness_ratio(moduli: tuple[float, float], poisson_ratios: tuple[float, float]) -> float:
+def stiffness_ratio(moduli: Pair, poisson_ratios: Pair) -> float:
     """G*/E*, 1/G* = Σ (2 − ν)/4G, 1/E* = Σ (1 − ν²)/E, G = E/2(1 + ν)."""
     pairs = list(zip(moduli, poisson_ratios, strict=True))
     return sum((1.0 - nu**2) / E for E, nu in pairs) / sum((2.0 - nu) * (1.0 + nu) / (2.0 * E) for E, nu in pairs)

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq, minimize_scalar
 
-from validation.references.interaction import Floats, PairInteraction
+from validation.references.interaction import PairInteraction
+from validation.references.numerics import Floats, Pair
 
 Flags = NDArray[np.bool_]
 TAIL = 40.0
@@ -142,7 +143,7 @@ class FoldedPairs:
                 return float(brentq(lambda d: self.loading(d) - preload, *ends, xtol=1e-15))
         raise ValueError("the finite core gives way before the preload is carried")
 
-    def adhesion(self, preload: float) -> tuple[float, float]:
+    def adhesion(self, preload: float) -> Pair:
         """Return the largest tension on the way back from `preload` [FU], and its d [LU]: just before a snap or smooth.
 
         Raises:
@@ -187,7 +188,7 @@ class FoldedPairs:
     def _energy(self, gap: Floats, distance: Floats) -> Floats:
         return self.interaction.energy(distance) + 0.25 * self.bulk_stiffness * (distance - gap) ** 2
 
-    def _between(self, first: float, last: float, snap: float | None) -> list[tuple[float, float]]:
+    def _between(self, first: float, last: float, snap: float | None) -> list[Pair]:
         """The stretches of a way that are parted by the snaps of its pairs at the gap `snap`."""
         places = [] if snap is None else (self._rest + self._alike[0] - snap).tolist()
         return list(pairwise([first, *sorted(d for d in places if first < d < last), last]))
@@ -206,7 +207,7 @@ class FoldedPairs:
             r = r[(r < self.fold.r_off) | (r > self.fold.r_on)]
         return (self._rest + self._alike[0][:, None] - self.gap(r)[None, :]).ravel()
 
-    def _largest(self, first: float, last: float, top: float) -> tuple[float, float]:
+    def _largest(self, first: float, last: float, top: float) -> Pair:
         """The largest tension between two snaps, and its place."""
         places = self._looks(first, last)
         tension = -self.unloading(places, top)

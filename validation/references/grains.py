@@ -1,10 +1,13 @@
-"""Two spheres that meet head-on: exact answers, and the laws that LAMMPS's granular models state.
+"""Two spheres that meet: exact answers head-on, and the laws that LAMMPS's granular models state.
 
 In units of E*, R and m of the pair, k = (4/3) E* sqrt(R), d the overlap:
 
     Kelvin-Voigt, exact       `impact.kelvin_voigt`
     viscoelastic              F = k d^1.5 + eta m sqrt(R d) d'; the same up to the largest overlap with eta m = 2 E* A
     tsuji, coeff_restitution  F = k d^1.5 + alpha sqrt(m k) d^0.25 d'
+
+    mindlin, mindlin_rescale             F_t = 2 G* a s, s' = v_s
+    mindlin/force, mindlin_rescale/force F_t' = 2 G* a v_s; cut off at mu F_n, rescale: s or F_t falls as a does
 
 A model ends at d = 0, with `limit_damping` where F falls to 0. Spheres that adhere are `impact.Adhesive`: they touch at
 d = 0 and separate where d(a) is stationary (fixed grips), or where F(a) is (fixed load).
@@ -22,6 +25,8 @@ K = 4.0 / 3.0
 """k of E* = R = 1."""
 LONGEST = 100.0
 """Time within which an impact at velocity 1 is over."""
+VERLET = 20_000
+"""Steps of an elastic impact."""
 
 
 class Impact(Bounce):
@@ -73,3 +78,19 @@ def _dashpot(damping: numerics.Function, limited: bool) -> Impact:
     end = done.t[-1]
     overlap = impact.peak(lambda t: done.sol(t)[0], end)
     return Impact(-done.y[1, -1], end, impact.peak(lambda t: acting(done.sol(t)), end), overlap, math.sqrt(overlap))
+
+
+def mindlin(psi: float, chi: float, by_force: bool, rescaled: bool) -> float:
+    """v_s'/v_s of the models of Mindlin by velocity Verlet, elastic, in the units of `oblique.rebound`."""
+    step = kelvin_voigt(0.0).contact_time / VERLET
+    d, a, v, slip, held, force, shear = 0.0, 0.0, 1.0, psi, 0.0, 0.0, 0.0
+    while d > 0.0 or v > 0.0:
+        v, slip = v - 0.5 * step * force, slip - step * chi * shear
+        d = max(d + step * v, 0.0)
+        last, a = a, math.sqrt(d)
+        held = held * (a / last if rescaled and a < last else 1.0) + step * slip * (2.0 * a if by_force else 1.0)
+        force, stiffness = K * a**3, 1.0 if by_force else 2.0 * a
+        shear = max(-force, min(stiffness * held, force))
+        held = shear / stiffness if a else 0.0
+        v, slip = v - 0.5 * step * force, slip - step * chi * shear
+    return slip / psi

@@ -9,9 +9,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from validation.references.numerics import Floats as Floats
+
 LawNumbers = tuple[float, float, float, float]
 """A [FU LU], a [LU], B [FU LU], b [LU]."""
 

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from validation.references.numerics import Function
-from validation.references.recovering import Floats, Law, Prony, Springs
+from validation.references.numerics import Floats, Function
+from validation.references.recovering import Law, Prony, Springs
 from validation.references.relaxing import Legs
 
 PARTS, CELLS = 96, 4000

@@ -8,7 +8,6 @@ units. Geike and Popov (2007) is the older reduction, with another g and stiffne
 """
 
 import math
-from dataclasses import dataclass
 
 from validation.references.axisymmetric import Body, Contact, with_rest_radius
 from validation.references.indenters import Marks
@@ -20,49 +19,27 @@ PRESSURE_ROUND_OFF = 1e-11
 """Its accuracy near the edge over a^2/(a^2 - r^2): the integrand has a difference of nearly equal values."""
 
 
-def edge_elongation(contact_radius: float, contact_modulus: float, work_of_adhesion: float) -> float:
-    """Return Delta_l(a) = sqrt(2 pi a W/E*) [length], the rule of Hess; a [length], E* [stress], W [force/length]."""
-    return math.sqrt(2.0 * math.pi * contact_radius * work_of_adhesion / contact_modulus)
-
-
 def _of_slope(slope: Function) -> Body:
     return Body(slope, lambda _: math.nan)
 
 
-@dataclass(frozen=True)
-class ReducedContact(Marks):
-    """One axisymmetric contact, reduced. A flat punch is the slope 0 at its own radius a.
+class ReducedContact(Contact, Marks):
+    """One axisymmetric contact, reduced. A flat punch is the slope 0 at its own radius a."""
 
-    Args:
-        slope: f'(r) >= 0 of the 3D profile, for r >= 0 [1]. `contact_radius` also asks for it at up to twice the radius
-            that it returns.
-        contact_modulus: E* > 0 [stress].
-        work_of_adhesion: W >= 0 [force/length]; 0 is the contact without adhesion.
-    """
+    def __init__(self, slope: Function, modulus: float, work: float = 0.0) -> None:
+        """Know the body by its slope.
 
-    slope: Function
-    contact_modulus: float
-    work_of_adhesion: float = 0.0
-
-    @property
-    def _contact(self) -> Contact:
-        return Contact(_of_slope(self.slope), self.contact_modulus, self.work_of_adhesion)
+        Args:
+            slope: f'(r) >= 0 of the 3D profile, for r >= 0 [1]. `contact_radius` also asks for it at up to twice the
+                radius that it returns.
+            modulus: E* > 0 [stress].
+            work: W >= 0 [force/length]; 0 is the contact without adhesion.
+        """
+        super().__init__(_of_slope(slope), modulus, work)
 
     def profile(self, place: float) -> float:
         """Return g(x) [length] at `place` x [length]."""
-        return self._contact.body.transformed(abs(place))
-
-    def displacement(self, contact_radius: float) -> float:
-        """Return d(a) = g(a) - Delta_l(a) [length] at `contact_radius` a >= 0 [length]."""
-        return self._contact.displacement(contact_radius)
-
-    def force(self, contact_radius: float) -> float:
-        """Return F(a) [force], positive in compression; a >= 0 [length]."""
-        return self._contact.force(contact_radius)
-
-    def energy(self, contact_radius: float) -> float:
-        """Return the elastic U(a) = E* int_0^a (d - g)^2 dx [force length], without -pi a^2 W; a >= 0 [length]."""
-        return self._contact.elastic_energy(contact_radius)
+        return self.body.transformed(abs(place))
 
     def contact_radius(self, displacement: float) -> float:
         """Return the root a of g(a) = d, the contact without adhesion [length]; 0 where d <= 0.
@@ -73,7 +50,7 @@ class ReducedContact(Marks):
         Raises:
             ValueError: with adhesion, where a(d) has two branches, or if the profile never rises to d.
         """
-        if self.work_of_adhesion > 0.0:
+        if self.work > 0.0:
             raise ValueError("with adhesion a displacement has two contact radii: take displacement(a)")
         if displacement <= 0.0:
             return 0.0
@@ -82,27 +59,23 @@ class ReducedContact(Marks):
         except ValueError:
             raise ValueError(f"the profile never rises to the displacement {displacement}") from None
 
-    def pressure(self, place: float, contact_radius: float) -> float:
+    def pressure(self, r: float, a: float, d: float | None = None) -> float:
         """Return p(r) = -(1/pi) int_r^inf q'(x)/sqrt(x^2-r^2) dx, q = E* (d - g) the force of the springs [stress].
 
         q' is -E* g' inside and, with adhesion, a jump by E* Delta_l at the edge. By parts, with x^2 = r^2 + t^2 and
         s^2 = a^2 - r^2, g' goes away: p = (E*/pi) [(d - g(r))/s + int_0^s (g(x)-g(r))/t^2 dt].
 
         Args:
-            place: r, 0 < r < a [length]: a cone's pressure has no limit at 0, with adhesion no pressure has one at a.
-            contact_radius: a [length].
+            r: 0 < r < a [length]: a cone's pressure has no limit at 0, with adhesion no pressure has one at a.
+            a: contact radius [length].
+            d: displacement [length]; None: d(a).
         """
-        r, a = place, contact_radius
         s, g_r = math.sqrt(a**2 - r**2), self.profile(r)
         accuracy = max(PRESSURE_ACCURACY, PRESSURE_ROUND_OFF * (a / s) ** 2)
         inside = integral(lambda t: (self.profile(math.hypot(r, t)) - g_r) / t**2, 0.0, s, accuracy=accuracy)
-        return self.contact_modulus / math.pi * ((self.displacement(a) - g_r) / s + inside)
-
-    def central_pressure(self, contact_radius: float) -> float:
-        """Return p(0) [stress] at `contact_radius` a [length], the limit of `pressure`; inf under a cone."""
-        return self._contact.central_pressure(contact_radius)
+        return self.modulus / math.pi * (((self.displacement(a) if d is None else d) - g_r) / s + inside)
 
 
-def with_zero_load_radius(slope: Function, contact_modulus: float, radius: float) -> ReducedContact:
+def with_zero_load_radius(slope: Function, modulus: float, radius: float) -> ReducedContact:
     """Return the contact of that slope [1] and E* [stress] whose radius without a load is `radius` [length]."""
-    return ReducedContact(slope, contact_modulus, with_rest_radius(_of_slope(slope), contact_modulus, radius).work)
+    return ReducedContact(slope, modulus, with_rest_radius(_of_slope(slope), modulus, radius).work)

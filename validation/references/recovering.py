@@ -10,7 +10,7 @@ leaving and touching are roots, found by bisection, for each spring its own. The
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
@@ -19,9 +19,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.references.numerics import Floats, Function
 from validation.references.relaxing import Legs, Material
 
-Floats = NDArray[np.float64]
 BISECTIONS = 60
 LOOKS = np.unique(np.concatenate([np.linspace(0.0, 1.0, 25)[1:], np.geomspace(1e-6, 0.03, 10)]))
 """Fractions of the time that remains of a leg, at which an event is looked for."""
@@ -221,9 +221,7 @@ class Followed:
     touches: int
 
 
-def followed(
-    law: Law, depth: Callable[[float], float], width: float, d: Legs, times: Sequence[float], cells: int
-) -> Followed:
+def followed(law: Law, depth: Function, width: float, d: Legs, times: Sequence[float], cells: int) -> Followed:
     """Follow a path of springs in the middles of cells between 0 and `width`; the times begin where the path does.
 
     At a corner of the path the force is that of the leg before.

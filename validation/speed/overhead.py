@@ -11,7 +11,7 @@ from pathlib import Path
 
 from validation.doors import Deck, Displace, Engine, Session, read_scene, settings_for, write_deck
 from validation.row import at_most
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 HAND = Path(__file__).parent / "hand"
 STEPS, ROUNDS, LIMIT = 4_000, 15, 1.05
@@ -24,11 +24,11 @@ BY_HAND = f"variable row equal step-$(step)\nvariable places vector [{','.join(m
 """What such a run by hand begins with."""
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """A row for each scene."""
     words = "LAMMPS loop time of the generated deck over that of a deck by hand"
-    return Findings([at_most(f"{words}: {name}", ratio(name, bench.folder / name), LIMIT, "asked for",
-                             "median of the turns", "set bound") for name in SCENES])  # fmt: skip
+    return [at_most(f"{words}: {name}", ratio(name, bench.folder / name), LIMIT, "asked for",
+                             "median of the turns", "set bound") for name in SCENES]  # fmt: skip
 
 
 def steps_of(deck: Deck) -> tuple[str, str]:

@@ -17,8 +17,8 @@ from validation import doors
 from validation.doors import Contact, PullOff, Scene, UnderLoad, read_scene, settings_for, shipped
 from validation.paper.scenes import MOVING, chain_model, changed
 from validation.references.pull_off import pull_off
-from validation.row import Row, at_most
-from validation.study import Bench, Findings, Study
+from validation.row import at_most
+from validation.study import Bench, Lines, Study
 
 REPEATS = 7
 STEP = 0.2
@@ -80,26 +80,23 @@ def plain(scene: Scene, tolerance: float, folder: Path, tuned: bool) -> tuple[fl
     return 0.5 * (low + high), context.clock.times["lammps_cpu_s"]
 
 
-def rows_of(tolerance: float, seconds: Mapping[str, float], errors: Mapping[str, float]) -> list[Row]:
+def rows_of(tolerance: float, seconds: Mapping[str, float], errors: Mapping[str, float]) -> Lines:
     """Times of ours over those of the plain ways and of the solver, and errors over the tolerance."""
-    rows = []
     for method in ("quasistatic", "dynamic"):
         asked = ASKED.get((method, tolerance))
         for way in WAYS:
             bound = 1.0 / asked if asked and way == "plain" else 1.0
             if asked or way == "plain":
                 words = f"CPU time of a pull-off, {method} contact1d over {WAYS[way]}, tolerance {tolerance:g}"
-                rows.append(at_most(words, seconds[method] / seconds[way], bound, "asked for", "–", "set bound"))
+                yield at_most(words, seconds[method] / seconds[way], bound, "asked for", "–", "set bound")
         words = f"relative error of F_A over the tolerance {tolerance:g}, {method}"
-        rows.append(at_most(words, errors[method] / tolerance, 1.0, "scipy solver", "tolerance", "independent solver"))
-    return rows
+        yield at_most(words, errors[method] / tolerance, 1.0, "scipy solver", "tolerance", "independent solver")
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """All at one tolerance, ours before, between and after the long ones: machines have slow minutes."""
     scene = read_scene(shipped("scenes/paper.toml"))
     assert isinstance(scene.experiment, PullOff)
-    rows = []
     for tolerance in TOLERANCES if bench.full else TOLERANCES[:1]:
         times: dict[str, list[float]] = {}
         forces = {}
@@ -118,8 +115,7 @@ def measure(bench: Bench) -> Findings:
                 _, seconds = plain(scene, tolerance, bench.folder / way, way != "plain")
                 times[way] = [seconds]
         errors = {method: abs(force / exact - 1.0) for method, force in forces.items()}
-        rows += rows_of(tolerance, {way: median(each) for way, each in times.items()}, errors)
-    return Findings(rows)
+        yield from rows_of(tolerance, {way: median(each) for way, each in times.items()}, errors)
 
 
 PLAIN = Study("plain", "A pull-off beside the paper's plain way", "Is a search worth its code?", measure)

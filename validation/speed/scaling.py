@@ -25,7 +25,7 @@ from validation.doors import Scene, shipped
 from validation.hard.cases import PAPER_LAW
 from validation.row import Row, at_most
 from validation.speed.clock import peak_memory, spent
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 REPEATS = 7
 COMMAND = {"figures": 1.5, "no-figures": 0.6}
@@ -88,20 +88,18 @@ def spread(costs: Collection[float]) -> float:
     return max(costs) / min(costs)
 
 
-def size_rows(found: Mapping[str, Mapping[int, Mapping[str, float]]]) -> list[Row]:
+def size_rows(found: Mapping[str, Mapping[int, Mapping[str, float]]]) -> Lines:
     """By method and size: how much the cost varies, and the most memory."""
-    rows = []
     for method, sizes in found.items():
         costs, size = [each["cost"] for each in sizes.values()], max(sizes)
         sizes_in_words = f"N = {min(sizes)} to {size} particles per body"
         words = f"CPU time per particle and step, {method}, largest over smallest for {sizes_in_words}"
-        rows.append(at_most(words, spread(costs), SPREAD, ASKED, "processor caches", "set bound"))
+        yield at_most(words, spread(costs), SPREAD, ASKED, "processor caches", "set bound")
         words, memory = f"memory of program and LAMMPS [GB], {method}, N = {size}", sizes[size]["memory"] / 1e9
-        rows.append(at_most(words, memory, MEMORY, ASKED, "–", "set bound"))
-    return rows
+        yield at_most(words, memory, MEMORY, ASKED, "–", "set bound")
 
 
-def measure_scaling(bench: Bench) -> Findings:
+def measure_scaling(bench: Bench) -> Lines:
     """Each size and method in a process of its own."""
     found: dict[str, dict[int, dict[str, float]]] = {method: {} for method in METHODS}
     for method, sizes in found.items():
@@ -109,10 +107,10 @@ def measure_scaling(bench: Bench) -> Findings:
             code = f"import json; from validation.speed.scaling import one; print(json.dumps(one({size}, {method!r})))"
             done = subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.PIPE, text=True)
             sizes[size] = json.loads(done.stdout)
-    return Findings(size_rows(found))
+    return size_rows(found)
 
 
-def measure_outside(bench: Bench) -> Findings:
+def measure_outside(bench: Bench) -> Lines:
     """Medians of the wall time outside LAMMPS, of the command and of later runs in Python."""
 
     def outside(words: str, limit: float, timed: Callable[[], float]) -> Row:
@@ -134,17 +132,15 @@ def measure_outside(bench: Bench) -> Findings:
         timing = run(read_scene(shipped(f"scenes/{name}.toml")), bench.folder / "run", figures=False).timing
         return time.perf_counter() - started - float(timing["lammps_s"])
 
-    rows = [outside(f"contact1d run pull_off.toml --{words}", limit, partial(command, words))
-            for words, limit in COMMAND.items()]  # fmt: skip
+    for words, limit in COMMAND.items():
+        yield outside(f"contact1d run pull_off.toml --{words}", limit, partial(command, words))
     for name in IN_PYTHON:
         later(name)
-        rows.append(outside(f"a later run of {name}.toml in Python, no figures", LATER, partial(later, name)))
-    return Findings(rows)
+        yield outside(f"a later run of {name}.toml in Python, no figures", LATER, partial(later, name))
 
 
-def measure_ranks(bench: Bench) -> Findings:
+def measure_ranks(bench: Bench) -> Lines:
     """One large contact on one MPI rank and on two, by turns: the same forces, and no more time."""
-    rows = []
     for method in METHODS:
         for size in (10_000, 100_000, 1_000_000) if bench.full else (10_000,):
             scene, forces = scaled_scene(size, method, 1), {}
@@ -159,14 +155,11 @@ def measure_ranks(bench: Bench) -> Findings:
             alone, shared = (statistics.median(each) for each in times.values())
             off = float(np.abs(forces[1] - forces[2]).max() / np.abs(forces[1]).max())
             words = f"{method}, {size} particles per body"
-            rows += [
-                at_most(f"difference of the forces on two MPI ranks and on one, over the largest force: {words}", off,
-                        SAME, "the same contact", "order of the sums"),
-                at_most("wall time of the load steps on two MPI ranks over that on one: "
-                        f"{words} ({alone:.3g} s on one)",
-                        shared / alone, 1.0, "no more time", "what two processors share", "set bound"),
-            ]  # fmt: skip
-    return Findings(rows)
+            yield at_most(f"difference of the forces on two MPI ranks and on one, over the largest force: {words}", off,
+                          SAME, "the same contact", "order of the sums")  # fmt: skip
+            yield at_most("wall time of the load steps on two MPI ranks over that on one: "
+                          f"{words} ({alone:.3g} s on one)",
+                          shared / alone, 1.0, "no more time", "what two processors share", "set bound")  # fmt: skip
 
 
 OUTSIDE = Study("outside", "Wall time outside LAMMPS", "What does the program cost beside the solver?", measure_outside)

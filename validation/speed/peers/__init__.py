@@ -12,7 +12,7 @@ from typing import Any
 
 from validation.row import Row, at_most
 from validation.speed.peers.contacts import errors
-from validation.study import Bench, Findings, Study
+from validation.study import Bench, Lines, Study
 
 MODULES = ("contact1d_peer", "tamaas_peer", "contact_mechanics_peer")
 NEEDS = {"tamaas_peer": "tamaas", "contact_mechanics_peer": "ContactMechanics"}
@@ -30,7 +30,7 @@ Result = Mapping[str, Any]
 """Solver, contact, setting, median times [s] and errors of one setting."""
 
 
-def measure(bench: Bench) -> Findings:
+def measure(bench: Bench) -> Lines:
     """Every setting in turn, round after round; one thread each."""
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     warnings.filterwarnings("ignore", category=DeprecationWarning)
@@ -56,7 +56,7 @@ def measure(bench: Bench) -> Findings:
                 result["errors"] = errors(result["contact"], curve)
     results = [result | {key: statistics.median(result[of]) for key, of in (("seconds", "times"), ("wall", "clock"))}
                for _, _, result in jobs]  # fmt: skip
-    return Findings(rows_of(results))
+    return rows_of(results)
 
 
 def error_of(result: Result) -> float:

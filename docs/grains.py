@@ -1,22 +1,28 @@
-"""docs/grains.md from the record of the studies: its tables, between markers, and its two figures."""
+"""docs/grains.md from the record of the studies: its tables, between markers, its figures, and grains.yaml."""
 
+import json
 import math
+import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from pathlib import Path
 
 import numpy as np
 
-from validation.figures import Drawing, Panel, Series
+from validation.figures import Drawing, Panel, Series, save
 from validation.grains import cases
-from validation.grains.cases import OURS, SPHERES, at_number, at_velocity, near_name, row_name
-from validation.grains.studies import ABOUT, AGREES, LATE, LENGTH, TENSION
-from validation.page import measured, number, table
+from validation.grains.cases import GIVEN, OURS, SPHERES, at_number, at_psi, at_step, at_velocity, near_name, row_name
+from validation.grains.studies import ABOUT, AGREES, CHI, LATE, LENGTH, TENSION
+from validation.page import measured, number, table, write_between
 from validation.references.grains import kelvin_voigt
+from validation.references.oblique import of_power
 from validation.row import Row, tables_beside
 from validation.study import Record
 
 DENSE = 25
 """Points of a line."""
 HEAD = ("model", "quantity", "LAMMPS", "exact", "deviation", "what to use")
+SOLVED, ROUND_OFF = 1e-5, 1e-8
+"""Uncertainties of the references of the page: of motions that are integrated, and of closed forms."""
 NOWHERE, STICK = "–", "the spheres stick"
 TABLES = tables_beside(__file__)
 QUANTITIES = TABLES["quantities"]
@@ -64,6 +70,21 @@ def both(row: Row) -> str:
     return f"{value(row.value)} ({deviation(row)})" if row.known else value(row.value)
 
 
+def apart(row: Row, decimals: int) -> str:
+    """Value and difference."""
+    return f"{value(row.value)} ({row.value - row.reference.value:+.{decimals}f})".replace("-", "−")
+
+
+def write(record: Record) -> None:
+    """The page, its figures and its numbers as data."""
+    folder = Path(__file__).parent
+    for name, text in blocks(record).items():
+        write_between(folder / "grains.md", name, text)
+    (folder / "grains.yaml").write_text("".join(unit_tests(record)), encoding="utf-8")
+    for name, drawing in drawings(record).items():
+        save(drawing, folder / name)
+
+
 def blocks(record: Record) -> dict[str, str]:
     """What stands between the markers of docs/grains.md, by their name."""
     rows = Rows(record)
@@ -76,6 +97,9 @@ def blocks(record: Record) -> dict[str, str]:
         "nearest": _nearest(rows),
         "adhesive": _adhesive(rows),
         "drawn": _drawn(rows),
+        "mdr": _mdr(rows),
+        "oblique": _oblique(rows),
+        "chung_ooi": _chung_ooi(rows),
         "wall": _wall(rows),
     }
 
@@ -92,7 +116,7 @@ def version(package: str) -> str:
 
 
 def _models(rows: Rows) -> Iterator[Sequence[str]]:
-    near = {name: f"{all_of[1]:g}" for name, all_of in cases.NEAREST.items()}
+    near = {name: f"{all_of[1]:g}" for name, all_of in GIVEN.nearest.items()}
     eta = f"`limit_damping` and η = {near[cases.LIMITED.name]} · 2 E* τ/m"
     stronger = f"a surface energy of {cases.STRONGER:g} γ, if restitution matters more than pull-off"
     for model, shown, at, quantity, use in TABLES["models"]:
@@ -109,18 +133,18 @@ def _models(rows: Rows) -> Iterator[Sequence[str]]:
 
 
 def _viscoelastic(rows: Rows) -> str:
-    lines = [[f"{A:g}", *rows.beside(A)] for A in cases.NUMBERS]
+    lines = [[f"{A:g}", *rows.beside(A)] for A in GIVEN.numbers]
     return table(["A", "exact restitution", OURS, *map(_words, cases.DAMPED)], lines)
 
 
 def _times(rows: Rows) -> str:
     names = ("contact_time", "peak_force")
-    lines = [[f"{A:g}", QUANTITIES[name], *rows.beside(A, name)] for A in cases.TIMED for name in names]
+    lines = [[f"{A:g}", QUANTITIES[name], *rows.beside(A, name)] for A in GIVEN.timed for name in names]
     return table(["A", "quantity", "exact", OURS, *map(_words, cases.DAMPED)], lines)
 
 
 def _asked(rows: Rows) -> str:
-    lines = [[f"{e:g}", *map(both, rows.of(cases.BY_RESTITUTION, f"e = {e:g}"))] for e in cases.ASKED]
+    lines = [[f"{e:g}", *map(both, rows.of(cases.BY_RESTITUTION, f"e = {e:g}"))] for e in GIVEN.asked]
     return table(["given restitution", *map(_words, cases.BY_RESTITUTION)], lines)
 
 
@@ -130,20 +154,18 @@ def _words(model: cases.Model) -> str:
 
 def _nearest(rows: Rows) -> str:
     lines = []
-    for place, A in enumerate(cases.TIMED):
+    for place, A in enumerate(GIVEN.timed):
         for model in cases.FITTED:
             found = [rows[near_name(model, A, v)] for v in cases.DECADE]
-            given = cases.NEAREST[model.name][place]
+            given = GIVEN.nearest[model.name][place]
             words = f"e = {given:g}" if model is cases.RESTITUTION else f"η = {given:g} · 2 E* τ/m"
-            errors = [f"{row.value - row.reference.value:+.4f}".replace("-", "−") for row in found]
-            cells = [f"{value(row.value)} ({error})" for row, error in zip(found, errors, strict=True)]
-            lines.append([f"{A:g}", _words(model), words, *cells])
+            lines.append([f"{A:g}", _words(model), words, *(apart(row, 4) for row in found)])
     return table(["A", "model", "nearest coefficient", "e at v/√10", "at v", "at √10 v"], lines)
 
 
 def _adhesive(rows: Rows) -> str:
     lines = []
-    for over in cases.OVER_STICKING:
+    for over in GIVEN.over:
         at = at_velocity(over)
         found = [rows.get(row_name(name, at, "restitution")) for name in JKR_IN_NAMES]
         assert found[0]
@@ -161,6 +183,61 @@ def _drawn(rows: Rows) -> str:
     return table(["quantity", "exact, JKR", "`jkr`", "exact, DMT", "`dmt`"], lines)
 
 
+def _mdr(rows: Rows) -> str:
+    words = {"pull_off": (QUANTITIES["pull off"], "R"), "restitution": ("restitution, v = 1.5 v_s", "T")}
+    lines = []
+    for name, step in GIVEN.steps:
+        found, mended = (rows[row_name(model, at_step(step), name)] for model in ("mdr", "mdr, factor 1"))
+        quantity, unit = words[name]
+        cell = number(found.value, 8 if name == "restitution" else 4)
+        lines.append([quantity, f"{step:g} {unit}", value(found.reference.value), cell, value(mended.value)])
+    return table(["quantity", "step", "exact, JKR", "`mdr`", "`mdr` with factor 1, emulated"], lines)
+
+
+def _oblique(rows: Rows) -> str:
+    lines, ours = [], row_name(OURS, at_psi(GIVEN.psi[0]), "tangential_restitution") in rows
+    for psi in GIVEN.psi:
+        found = [rows[row_name(model, at_psi(psi), "slip")] for model in GIVEN.tangential]
+        own = [rows.ours(at_psi(psi), "tangential_restitution")] if ours else []
+        lines.append([f"{psi:g}", value(found[0].reference.value), *own, *(apart(row, 3) for row in found)])
+    own = ["contact1d, its negative"] if ours else []
+    return table(["ψ", "exact v_s′/v_s", *own, *(f"`{model}`" for model in GIVEN.tangential)], lines)
+
+
+def _chung_ooi(rows: Rows) -> str:
+    lines = []
+    for test, body, at, *_ in GIVEN.tests:
+        for name in GIVEN.measured[test]:
+            row = rows[row_name(f"test {test}, {body}", at, name)]
+            cell = apart(row, 3) if row.known else value(row.value)
+            lines.append([test, body, at or NOWHERE, TABLES["chung_ooi"][name], value(row.reference.value), cell])
+    return table(["test", "body", "given", "quantity", "exact", "LAMMPS"], lines)
+
+
+def unit_tests(record: Record) -> Iterator[str]:
+    """docs/grains.yaml: a document for each row of LAMMPS, with keys as in its `unittest/granular`."""
+    yield "# docs/grains.md as data, written by `python -m validation pages`; decks are in validation/grains/decks.\n"
+    for answer in record.answers:
+        for row in answer.rows:
+            if not any(row.runs):
+                continue
+            deck, *given = shlex.split(row.runs[0])
+            exact, solved = row.reference.value, row.reference.evidence == "independent solver"
+            entries = {
+                "name": json.dumps(row.name, ensure_ascii=False),
+                "lammps_version": version(record.versions["lammps"]).removeprefix("LAMMPS "),
+                "date_generated": answer.date,
+                "tags": f"granular, {answer.name}, generated",
+                "input_file": deck,
+                "variables": "".join(["|", *(f"\n  {one.replace('=', ' ', 1)}" for one in given)]) if given else '""',
+                "lammps_value": f"{row.value:.9g}",
+                "analytic_value": f"{exact:.12g}",
+                "analytic_uncertainty": f"{(SOLVED if solved else ROUND_OFF) * max(1.0, abs(exact)):.1e}",
+                "analytic_model": json.dumps(row.reference.source, ensure_ascii=False),
+            }
+            yield "\n".join(["---", *(f"{key}: {text}" for key, text in entries.items()), "...\n"])
+
+
 def _wall(rows: Rows) -> str:
     shown = {"`hertz/material E …`": "wall hertz/material", "`hertz/material 2E …`": "nearest wall hertz/material"}
     found = {words: rows[row_name(name, "", "E*")] for words, name in shown.items()}
@@ -171,7 +248,11 @@ def _wall(rows: Rows) -> str:
 def drawings(record: Record) -> Mapping[str, Drawing]:
     """The figures of docs/grains.md, by the file's name."""
     rows = Rows(record)
-    return {"grains_damped.png": _damped_drawing(rows), "grains_adhesive.png": _adhesive_drawing(rows)}
+    return {
+        "grains_damped.png": _damped_drawing(rows),
+        "grains_adhesive.png": _adhesive_drawing(rows),
+        "grains_oblique.png": _oblique_drawing(rows),
+    }
 
 
 def _points(rows: Rows, label: str, x: Sequence[float], names: Sequence[str]) -> Series:
@@ -187,14 +268,14 @@ def _restitutions(rows: Rows, labels: Mapping[str, str], x: Sequence[float], pla
 
 
 def _damped_drawing(rows: Rows) -> Drawing:
-    numbers = np.geomspace(cases.NUMBERS[0], cases.NUMBERS[-1], DENSE).tolist()
+    numbers = np.geomspace(GIVEN.numbers[0], GIVEN.numbers[-1], DENSE).tolist()
     exact = Series("exact, Kelvin-Voigt", numbers, [kelvin_voigt(A).restitution for A in numbers])
     shown = {"viscoelastic": "viscoelastic", "viscoelastic limit_damping": "with limit_damping", OURS: OURS}
-    points = _restitutions(rows, shown, cases.NUMBERS, map(at_number, cases.NUMBERS))
+    points = _restitutions(rows, shown, GIVEN.numbers, map(at_number, GIVEN.numbers))
     decade = np.geomspace(cases.DECADE[0], cases.DECADE[-1], DENSE).tolist()
-    lines = [(v, kelvin_voigt(A * v**0.2).restitution if v else math.nan) for A in cases.TIMED for v in [*decade, 0.0]]
+    lines = [(v, kelvin_voigt(A * v**0.2).restitution if v else math.nan) for A in GIVEN.timed for v in [*decade, 0.0]]
     curves = Series("exact, A = 0.1, 0.3, 1 at v = 1", *np.transpose(lines))
-    places = [(A, v) for A in cases.TIMED for v in cases.DECADE]
+    places = [(A, v) for A in GIVEN.timed for v in cases.DECADE]
     near = [
         _points(rows, model.name, [v for _, v in places], [near_name(model, A, v) for A, v in places])
         for model in cases.FITTED
@@ -206,16 +287,28 @@ def _damped_drawing(rows: Rows) -> Drawing:
     return Drawing("Restitution of a Kelvin-Voigt body", panels)
 
 
+def _oblique_drawing(rows: Rows) -> Drawing:
+    """v_s'/v_s times psi over psi, as Maw and others draw it."""
+    along = np.linspace(0.02, GIVEN.psi[-1], 4 * DENSE).tolist()
+    exact = Series("exact", along, [psi * of_power(psi, CHI) for psi in along])
+    found = [
+        Series(model, GIVEN.psi, [psi * rows[row_name(model, at_psi(psi), "slip")].value for psi in GIVEN.psi])
+        for model in GIVEN.tangential
+    ]
+    panel = Panel("ψ = (κ/µ) v_s/v before the impact", "(κ/µ) v_s′/v after it", found, [exact], title="solid spheres")
+    return Drawing("Velocity of the contact point after an oblique impact over that before", [panel])
+
+
 def _adhesive_drawing(rows: Rows) -> Drawing:
-    beyond = np.linspace(0.0, math.sqrt(cases.DRAWN[0] - LATE[0]), 4 * DENSE) ** 2  # finer where the curve is steep
+    beyond = np.linspace(0.0, math.sqrt(GIVEN.drawn[0] - LATE[0]), 4 * DENSE) ** 2  # finer where the curve is steep
     overlaps = [LATE[0], *(LATE[0] + 1e-9 + beyond).tolist()]
     forces = [0.0, *(SPHERES.force_at(overlap * LENGTH) / TENSION for overlap in overlaps[1:])]
     loop = Series("exact, JKR", overlaps, forces)
-    pulled = _points(rows, "jkr", cases.DRAWN, [row_name("jkr", f"overlap {d:g}", "force") for d in cases.DRAWN])
+    pulled = _points(rows, "jkr", GIVEN.drawn, [row_name("jkr", f"overlap {d:g}", "force") for d in GIVEN.drawn])
     velocities = 1.0 + np.geomspace(1e-5, 9.0, 3 * DENSE)
     exact = Series("exact, JKR", velocities, np.sqrt(1.0 - velocities**-2))
     labels = {"jkr": "jkr", "nearest jkr": f"jkr, {cases.STRONGER:g} γ", "dmt": "dmt", OURS: OURS}
-    points = _restitutions(rows, labels, cases.OVER_STICKING, map(at_velocity, cases.OVER_STICKING))
+    points = _restitutions(rows, labels, GIVEN.over, map(at_velocity, GIVEN.over))
     panels = (
         Panel("overlap / (π²W²R/E*²)^(1/3)", "force / pull-off force", [pulled], [loop], title="drawn apart"),
         Panel("v / v_s", "restitution", points, [exact], log="x", title="impact"),
