@@ -14,7 +14,7 @@ from contact1d.workflow.fit.data import DataError, curves
 from contact1d.workflow.fit.forward import LAWS, Body, Branch
 from contact1d.workflow.fit.noise import averaged, noises
 from contact1d.workflow.fit.plan import read_fit
-from validation.references.force_curves import Sphere, measured
+from validation.references.force_curves import Sphere, measured, noise
 
 MODULUS, WORK, RADIUS = 2e6, 0.05, 5e-6
 TABOR = (RADIUS * WORK**2 / MODULUS**2) ** (1.0 / 3.0)
@@ -149,13 +149,13 @@ RUNS = [np.array([0, 1, 2, 5, 6, 7, 8, 12]), np.arange(20, 32)]
 @pytest.mark.parametrize(("share", "memory"), [(0.0, 1.0), (0.4, 3.0), (1.0, 3.0), (0.9, 0.7)])
 def test_whitening_makes_the_covariance_of_a_noise_unity(share: float, memory: float) -> None:
     """V = (1 − s) I + s exp(−|i − j|/τ) of each run: W V Wᵀ = I, log |V| = −2 log |W|."""
-    (noise,) = noises([(share, memory)], RUNS)
+    (filtered,) = noises([(share, memory)], RUNS)
     V = np.zeros((20, 20))
     for run, part in zip(RUNS, (slice(0, 8), slice(8, 20)), strict=True):
         V[part, part] = share * np.exp(-np.abs(run[:, None] - run) / memory) + (1.0 - share) * np.eye(run.size)
-    W = noise.whitened(np.eye(20))
+    W = filtered.whitened(np.eye(20))
     assert W @ V @ W.T == pytest.approx(np.eye(20), abs=ROUND_OFF)
-    assert noise.log_determinant == pytest.approx(np.linalg.slogdet(V)[1], abs=ROUND_OFF)
+    assert filtered.log_determinant == pytest.approx(np.linalg.slogdet(V)[1], abs=ROUND_OFF)
 
 
 def test_a_line_in_white_noise_has_the_interval_of_student() -> None:
@@ -169,3 +169,18 @@ def test_a_line_in_white_noise_has_the_interval_of_student() -> None:
     ends = found.ends(1, 0.95) + found.best.step[1]
     shares = [e.weight * student.cdf((ends - e.step[1]) / math.sqrt(e.covariance[1, 1]), 10.0) for e in found.estimates]
     assert sum(shares) == pytest.approx([0.025, 0.975], abs=1e-5)
+
+
+@pytest.mark.parametrize("pause", [False, True])
+def test_two_runs_share_their_noise_unless_there_was_a_pause(pause: bool) -> None:
+    """A force that is largest at the turn: σ² (Jᵀ V⁻¹ J)⁻¹ with V of the record, or of each run if far apart there."""
+    runs, memory, draw = [np.arange(100), np.arange(100, 200)], 20.0, np.random.default_rng(11)
+    x = np.concatenate([np.linspace(-1.0, 1.0, 100), np.linspace(1.0, -1.0, 100)])
+    slopes = np.column_stack([np.maximum(x, 0.0) ** 1.5, np.repeat(np.eye(2), 100, axis=0)])
+    drawn = [noise(draw, 100, memory), noise(draw, 100, memory)] if pause else [noise(draw, 200, memory)]
+    found = averaged(runs, np.concatenate(drawn), slopes, np.zeros((0, 4)), looks=2).best
+    share, memory = found.noise.share, found.noise.memory
+    V = share * np.exp(-np.abs(np.subtract.outer(np.arange(200), np.arange(200))) / memory)
+    V = (V * np.kron(np.eye(2), np.ones((100, 100))) if pause else V) + (1.0 - share) * np.eye(200)
+    exact = found.deviation**2 * np.linalg.inv(slopes.T @ np.linalg.solve(V, slopes))
+    assert found.covariance == pytest.approx(exact, rel=1e-4)

@@ -5,8 +5,10 @@
 s is the share of the variance that has a memory, τ [points] its length: s = 0 is white noise, s = 1 a first-order
 autoregression. The exact likelihood and the whitened residuals follow from a Kalman filter for m, whose gain is a
 recursion of numbers, so that whitening solves one bidiagonal system. Excluded points leave a gap, whose length counts
-for the memory. τ and s are unknown, too: every estimate is an average over a grid of both, weighted with the restricted
-likelihood of the residuals (REML), in which the parameters of the curve have been integrated out.
+for the memory. The memory ends with a pause between two runs; without a pause it lasts to the next run, as over the
+turn of a curve, where the force is largest: two runs that share their noise tell little more of this force than one. τ,
+s and a pause are unknown, too: every estimate is an average over a grid of τ and s, with and without a pause, weighted
+with the restricted likelihood of the residuals (REML), in which the parameters of the curve have been integrated out.
 
 Source: P. J. Brockwell, R. A. Davis, Time Series: Theory and Methods (1991), chapter 12; D. A. Harville, Journal of the
 American Statistical Association 72 (1977) 320.
@@ -20,7 +22,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_banded
+from scipy.linalg.lapack import dtbtrs
 from scipy.optimize import brentq
 from scipy.special import softmax, stdtr
 
@@ -54,7 +56,7 @@ class Noise:
         """
         # x_i = (1 − K_i) φ_i x_{i−1} + K_i y_i is the filter's m after point i, φ_{i+1} x_i its prediction.
         band = np.stack([np.ones_like(self.gain), -np.roll((1.0 - self.gain) * self.decay, -1)])
-        filtered = solve_banded((1, 0), band, (self.gain * columns.T).T, check_finite=False).T
+        filtered = dtbtrs(band, (self.gain * columns.T).T, uplo="L", diag="U")[0].reshape(columns.shape).T
         predicted = self.decay * np.roll(filtered, 1, axis=-1)
         return np.asarray(((columns.T - predicted) / self.deviation).T)
 
@@ -223,12 +225,14 @@ def averaged(
 ) -> AveragedEstimate:
     """Return the estimates under all noises of a grid over s and τ, with weights by likelihood whose sum is 1.
 
-    s is the share of the variance with a memory, τ the memory [points]. Each further grid is finer around the likely
-    pairs; the estimates are those of the last one. Noises that the resting forces exclude have the weight 0: what a
-    contact model misses in contact must not pass for a memory of the noise.
+    s is the share of the variance with a memory, τ the memory [points]. Of several runs each pair has two noises, as
+    likely before the residuals are known: one with a pause after each run, in which the memory ends, and one whose
+    memory lasts to the next run. Each further grid is finer around the likely pairs; the estimates are those of the
+    last one. Noises that the resting forces exclude have the weight 0: what a contact model misses in contact must not
+    pass for a memory of the noise.
 
     Args:
-        runs: indices of the compared points of each run; whitening begins anew with each.
+        runs: indices of the compared points of each run, in the order of time.
         residuals: (n,) of all runs.
         slopes: (n, p), −∂residuals/∂parameters.
         prior: (q, p + 1), a row for each calibration of a parameter; the last column is its misfit in standard
@@ -241,17 +245,20 @@ def averaged(
     shares: Array = np.array([0.0, 0.05, 0.15, 0.35, 0.6, 0.8, 0.93, 1.0])
     # A memory shorter than 0.7 points is white noise; the variance of one longer than a quarter of a run is unknown.
     memories: Array = np.geomspace(0.7, max(4.0, 0.25 * max(run.size for run in runs)), 12)
+    records = [[*runs], [np.concatenate([*runs])]][: len(runs)]  # with a pause after each run, and without
     highest = -math.inf
     for _ in range(looks):
         pairs = [(float(s), float(m)) for s in shares for m in (memories if s > 0.0 else memories[:1])]
-        estimates, logs = _estimates(noises(pairs, runs), residuals, slopes, prior)
+        grid = [noise for record in records for noise in noises(pairs, record)]
+        estimates, logs = _estimates(grid, residuals, slopes, prior)
         if resting is not None:
             shown = resting.likelihoods(pairs)
             highest = max(highest, float(shown.max()))
-            logs = np.where(shown >= min(highest - excluded, shown.max()), logs, -math.inf)
+            logs[np.tile(shown < min(highest - excluded, shown.max()), len(records))] = -math.inf
         # White noise stands once for all memories.
-        weights = softmax(logs + np.log([1.0 if s > 0.0 else memories.size for s, _ in pairs]))
-        likely = [pair for pair, weight in zip(pairs, weights, strict=True) if weight > 1e-5 * weights.max()]
+        weights = softmax(logs + np.log([1.0 if noise.share > 0.0 else memories.size for noise in grid]))
+        tried = zip(pairs * len(records), weights, strict=True)
+        likely = [pair for pair, weight in tried if weight > 1e-5 * weights.max()]
         likely_shares, likely_memories = map(np.array, zip(*likely, strict=True))
         shares = _finer(likely_shares, shares, np.linspace)
         memories = _finer(likely_memories, memories, np.geomspace)
