@@ -8,6 +8,6 @@ snap), `boltzmann_pairs` (with noise). Theory: `hertz`, `indenters` (JKR and oth
 (any body, with kinks and the adhesion rule of Heß), `mdr` (the same by a slope alone). Under Dugdale's law: `maugis`
 (a paraboloid), `force_curves` (its curves as measured), `dugdale` (any body), `dugdale_elements` (in three
 dimensions). In time: `relaxing`, `creeping`, `dashpots`, `recovering`, `line_load`, `rings` (in three dimensions),
-`impact`, `oblique`, `grains`, `zunker_kamrin`, `receding_edge`. Friction: `slide`, `prandtl_tomlinson`, `incommensurate`, `flat_chain`,
-`thermal_friction`, `langevin_ensemble`, `detachment`.
+`impact`, `oblique`, `grains`, `zunker_kamrin`, `receding_edge`. Friction: `slide`, `prandtl_tomlinson`,
+`incommensurate`, `flat_chain`, `thermal_friction`, `langevin_ensemble`, `detachment`.
 """
