@@ -49,6 +49,7 @@ KNOWN: dict[str, str] = {
         "± is 4 to 20 times the errors": (
             "cap power-friction-tangential_cycles-quasistatic",
             "cap blunt_cone-friction-tangential_cycles-quasistatic",
+            "cap truncated_cone-friction-tangential_cycles-quasistatic",
             "cap circle-prony-history_of_a_force-quasistatic",
         ),
         "± is too small by 3 to 8 %": (

@@ -13,6 +13,7 @@ a run; of pairs it is a predictor, and of both it gives the discretisation error
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -262,11 +263,13 @@ class Particles(ABC):
         """Return new particles of the same body and half-width at `factor` times the spacing.
 
         Stiffness and force of a particle are scaled alike. The apex is midway between two particles where the number of
-        particles was even, else at one.
+        particles was even, else at one; in a body that ends with its chain where the new number is even.
         """
         law = self.law
         law = replace(law, spacing=factor * law.spacing, stiffness=factor * law.stiffness, force=factor * law.force)
-        phase = 0.5 if self.x.size % 2 == 0 else 0.0
+        is_whole = math.isclose(self._reach, law.profile.reach)
+        count = round(2.0 * self._reach / law.spacing) if is_whole else self.x.size
+        phase = 0.5 if count % 2 == 0 else 0.0
         return replace(self, law=law, x=positions_within(self._reach, law.spacing, phase))
 
     @property
