@@ -52,7 +52,7 @@ def measure(bench: Bench) -> Lines:
     """The paraboloid, the shapes, random scenes."""
     for mu in TABOR:
         yield from _paraboloid(bench, mu)
-    for mu, (name, solid) in product(FULL_SHARPNESS if bench.full else SHARPNESS, shapes().items()):
+    for (name, solid), mu in product(shapes().items(), FULL_SHARPNESS if bench.full else SHARPNESS):
         yield from _shape(bench, name, mu, *solid)
     yield from random_plane.random_rows(bench, random_plane.COHESIVE, QUADRATURE)
 
