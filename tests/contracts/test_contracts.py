@@ -206,5 +206,5 @@ def test_the_deck_repeats_the_run(made: Runs, one: Combination, tmp_path: Path) 
         if path.name == "in.lammps" or path.suffix in (".data", ".table", ".cells", ".moves"):
             shutil.copy(path, tmp_path)
     with Engine.session(tmp_path) as session:
-        session.run_file("in.lammps")
+        session.execute("include in.lammps")
     assert (tmp_path / "curve.txt").read_bytes() == (done.folder / "curve.txt").read_bytes()

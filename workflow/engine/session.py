@@ -2,7 +2,7 @@
 
     with Engine.session(folder) as session:
         session.execute(text, phase="loading")
-        force = session.value("force")
+        (force,) = session.values("force")
 
 Whatever LAMMPS does (stop with an error, lose an atom, crash, hang, compute NaN), the caller gets an `EngineError` that
 says what, in which phase and at which step; the files of the folder stay, and the next session has a new process.
@@ -99,7 +99,8 @@ class Session:
         """Run LAMMPS commands in the folder of the session.
 
         Args:
-            text: any number of lines; `&` continues one, triple quotes may span several. "": begin the phase only.
+            text: any number of lines; `&` continues one, triple quotes may span several. `label`, `next` and
+                `jump SELF` work in a file that it includes. "": begin the phase only.
             phase: name of what they do, for errors and progress; kept until the next one. None: as before.
             expected_steps: steps of the whole phase, for the progress; None where unknown.
             meanwhile: called once while LAMMPS runs, and takes no further time where LAMMPS takes longer; not for a
@@ -112,31 +113,6 @@ class Session:
         if text:
             self.measure(text, meanwhile=meanwhile)
 
-    def run_file(self, name: str, phase: str | None = None, expected_steps: int | None = None) -> None:
-        """Run the LAMMPS file `name` of the folder, in which `label`, `next` and `jump SELF` work.
-
-        `phase`: name of what it does, for errors and progress, None: as before; `expected_steps`: steps of the whole
-        phase, for the progress, None where unknown.
-
-        Raises:
-            EngineError: LAMMPS failed, ran out of time or left a position that is not finite; the file cannot be read;
-                the session is over.
-        """
-        self._enter(phase, expected_steps)
-        path = self.folder / name
-        self._commands = path.read_text(errors="replace") if path.is_file() else ""
-        self._ask("measure", "", name, (), ())
-
-    def value(self, name: str) -> float:
-        """Return one number in units of the LAMMPS input: an equal-style variable by its name, or a LAMMPS formula.
-
-        A formula is "f_hold[3]" or "pe", for instance.
-
-        Raises:
-            EngineError: it is unknown or not finite, or the session is over.
-        """
-        return self.measure("", (name,)).values[0]
-
     def values(self, *names: str) -> tuple[float, ...]:
         """Return several numbers, in the order of `names`, in units of the LAMMPS input, in one round trip.
 
@@ -146,20 +122,6 @@ class Session:
             EngineError: one is unknown or not finite, or the session is over.
         """
         return self.measure("", names).values
-
-    def atoms(self, *names: str) -> dict[str, Array]:
-        """Return copies of per-atom arrays by name, (n,) or (n, columns), rows in the order of the ids.
-
-        They are in units of the LAMMPS input; "id" and "type" are always among them.
-
-        Args:
-            names: properties ("x", "v", "f", "molecule"), computes ("c_opposite", "c_opposite[1]"), fixes ("f_…") and
-                atom-style variables ("v_…").
-
-        Raises:
-            EngineError: there are no atoms, no such array, or a number in it is not finite; the session is over.
-        """
-        return self.measure("", (), ("id", *names)).atoms
 
     def measure(
         self,
@@ -173,7 +135,8 @@ class Session:
         Args:
             text: LAMMPS commands; "" for none.
             values: names of equal-style variables, or LAMMPS formulas.
-            atoms: names of per-atom arrays, "x" or "c_opposite[1]" for instance; "id" and "type" come with any, and
+            atoms: names of per-atom arrays: properties ("x", "v", "f", "molecule"), computes ("c_opposite",
+                "c_opposite[1]"), fixes ("f_…") and atom-style variables ("v_…"); "id" and "type" come with any, and
                 without any the reading has none.
             meanwhile: called once while LAMMPS runs, and takes no further time where LAMMPS takes longer.
 
@@ -182,7 +145,7 @@ class Session:
                 was requested is unknown or not finite; the session is over.
         """
         self._commands = text
-        numbers, arrays = self._ask("measure", text, "", tuple(values), tuple(atoms), meanwhile=meanwhile)
+        numbers, arrays = self._ask("measure", text, tuple(values), tuple(atoms), meanwhile=meanwhile)
         return Reading(tuple(numbers), arrays)
 
     def measure_rows(

@@ -165,21 +165,20 @@ class Runner:
             self.lammps = None
         os.chdir("/")
 
-    def measure(self, text: str, file: str, values: Sequence[str], atoms: Sequence[str]) -> Any:
-        """Run the commands of `text`, or of `file`, then return ([numbers of `values`], {name: array} of `atoms`).
+    def measure(self, text: str, values: Sequence[str], atoms: Sequence[str]) -> Any:
+        """Run the commands of `text`, then return ([numbers of `values`], {name: array} of `atoms`).
 
         In units of the LAMMPS input. Without names of `atoms` the arrays are {}, with some "id" and "type" are among
-        them, and on ranks other than 0 they are {}. With "" for `text` and `file` nothing is run. The shared timestep
-        and steps are updated in any case.
+        them, and on ranks other than 0 they are {}. With "" for `text` nothing is run. The shared timestep and steps
+        are updated in any case.
 
         Raises:
-            RefusalError: a position or a requested number is not finite, there is no such array, or the file cannot be
-                read.
+            RefusalError: a position or a requested number is not finite, or there is no such array.
             Exception: LAMMPS failed.
         """
         try:
-            if text or file:
-                self._execute(text, file)
+            if text:
+                self._execute(text)
                 if "x" not in atoms:
                     require_finite_positions(self.lammps, self.world)
             arrays = read_atoms(self.lammps, atoms, self.world) if atoms else {}
@@ -197,7 +196,7 @@ class Runner:
             RefusalError: a position or a requested number is not finite, or there is no such array.
             Exception: LAMMPS failed.
         """
-        return [self.measure(text, "", values, atoms) for text in texts]
+        return [self.measure(text, values, atoms) for text in texts]
 
     def about(self, styles: Sequence[tuple[str, str]]) -> dict[str, Any]:
         """Return {"version": as YYYYMMDD, "packages": list, "mpi": MPI library or "", "missing": the `styles` that
@@ -230,31 +229,25 @@ class Runner:
         self.clock = ctypes.c_int64.from_address(address)
         self.clock_start = self.clock.value
 
-    def _execute(self, text: str, file: str) -> None:
-        """Run the commands of `text`, or where it is "" of `file`, and add their time and steps to those of the
-        session.
+    def _execute(self, text: str) -> None:
+        """Run the commands of `text`, and add their time and steps to those of the session.
 
         Time and steps are added also where LAMMPS fails.
 
         Raises:
-            RefusalError: the file cannot be read.
             Exception: LAMMPS failed.
         """
-        try:
-            commands = text or Path(file).read_text(errors="replace")
-        except OSError as error:
-            raise RefusalError(f"the LAMMPS file {file} cannot be read ({error.strerror})") from None
         mark = None
-        moves = bool(file or MOVES_THE_CLOCK.search(commands))
+        moves = MOVES_THE_CLOCK.search(text)
         if moves and not self.world.rank:  # which alone has a log
             self.lammps.flush_buffers()
             mark = self.log.stat().st_size
         self.clock_start = self.clock.value if self.clock else 0
-        if moves and FREES_THE_CLOCK.search(commands):
+        if moves and FREES_THE_CLOCK.search(text):
             self.clock = None
         wall, cpu = time.perf_counter(), time.process_time()
         try:
-            self.lammps.file(file) if file else self.lammps.commands_string(text)
+            self.lammps.commands_string(text)
         finally:
             self.wall += time.perf_counter() - wall
             self.cpu += time.process_time() - cpu
