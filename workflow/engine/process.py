@@ -22,7 +22,7 @@ from itertools import accumulate, pairwise
 from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from contact1d.workflow.engine.launcher import Listener, cause_among_ranks, launcher_of, on_one_node
 
@@ -114,8 +114,7 @@ class WorkerProcess:
         """
         self._connection, worker_end = Pipe()
         with tempfile.TemporaryFile() as file:
-            file.truncate(16)
-            self._board_map = mmap.mmap(file.fileno(), 16)
+            self._share_board(file)
             self._run([], ALONE, (worker_end.fileno(), file.fileno(), os.getpid()), worker_end.fileno(), file.fileno())
         worker_end.close()
 
@@ -123,11 +122,15 @@ class WorkerProcess:
         """Start the ranks by a launcher, maybe on other machines: they inherit no open files."""
         launcher = launcher_of(self.ranks)
         with tempfile.TemporaryDirectory() as folder, (Path(folder) / "board").open("w+b") as file:
-            file.truncate(16)
-            self._board_map = mmap.mmap(file.fileno(), 16)
+            self._share_board(file)
             with Listener(Path(folder) / "socket") as listener:
                 self._run(launcher, RANKS, (listener.address, file.name))
                 self._connection = listener.connection_to(self._process)
+
+    def _share_board(self, file: IO[bytes]) -> None:
+        """Map an empty file of 16 bytes, in which the worker writes the timestep and the steps done."""
+        file.truncate(16)
+        self._board_map = mmap.mmap(file.fileno(), 0)
 
     def _run(self, launcher: Sequence[str], entry: str, arguments: tuple[object, ...], *files: int) -> None:
         """Start the process with a program `entry`, its arguments and the open `files` that it inherits."""

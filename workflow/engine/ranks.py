@@ -14,13 +14,11 @@ import select
 import threading
 import time
 from collections.abc import Callable
-from contextlib import suppress
 from multiprocessing.connection import Client
 from pathlib import Path
 from typing import Any
 
-from contact1d.workflow.engine.readout import RefusalError
-from contact1d.workflow.engine.worker import Runner, answer, leave, send, watch
+from contact1d.workflow.engine.worker import Runner, answer, leave, serve, watch
 
 
 def main(socket: str, board: str) -> None:
@@ -36,7 +34,7 @@ def main(socket: str, board: str) -> None:
     if world.rank:
         _follow(world, lambda: os.getppid() != launcher)
     with Path(board).open("r+b") as file:
-        shared = mmap.mmap(file.fileno(), 16)
+        shared = mmap.mmap(file.fileno(), 0)
     connection = Client(socket, "AF_UNIX")
     runner = Runner(memoryview(shared).cast("q"), world)
 
@@ -47,24 +45,12 @@ def main(socket: str, board: str) -> None:
         """Return whether the parent has closed the socket, or the launcher has ended."""
         return bool(hung_up.poll(0)) or os.getppid() != launcher
 
-    threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
-    _broadcast(world, ("prepare",))
-    with suppress(RefusalError):  # which the first `open` reports
-        runner.prepare()
-    try:
-        while True:
-            request = connection.recv()
-            _broadcast(world, request)
-            send(connection, answer(runner, request[0], tuple(request[1:])))
-    except (EOFError, OSError):
-        _broadcast(world, None)
-        leave()
+    def broadcast(request: tuple[Any, ...] | None) -> None:
+        """Send a request, (verb, arguments…), to all other ranks; None: they are to leave."""
+        for rank in range(1, world.size):
+            world.send(request, rank)
 
-
-def _broadcast(world: Any, request: tuple[Any, ...] | None) -> None:
-    """Send a request, (verb, arguments…), to all other ranks; None: they are to leave."""
-    for rank in range(1, world.size):
-        world.send(request, rank)
+    serve(connection, runner, gone, broadcast)
 
 
 def _follow(world: Any, gone: Callable[[], bool]) -> None:
@@ -81,7 +67,7 @@ def _follow(world: Any, gone: Callable[[], bool]) -> None:
         request = world.recv(source=0)
         if request is None:
             leave()
-        outcome, words, *_ = answer(runner, request[0], tuple(request[1:]))
+        outcome, words, *_ = answer(runner, request)
         if outcome != "done" and request[0] != "prepare":
             time.sleep(1.0)  # in which the parent ends all ranks, if all have failed
             print(f"failed on rank {world.rank}: {words}", flush=True)  # `launcher.cause_among_ranks` reads it

@@ -265,13 +265,13 @@ class Runner:
             return sum(int(steps) for steps in LOOP.findall(log.read()))
 
 
-def answer(runner: Runner, verb: str, arguments: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Run the method `verb` of the runner and return (outcome, payload, timestep, steps, wall [s], cpu [s]).
+def answer(runner: Runner, request: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Run a request (method of the runner, arguments…); return (outcome, payload, timestep, steps, wall [s], cpu [s]).
 
     The outcome is "done", with what the method returned as payload, or "refused" or "lammps", with why as text: by the
     program, or in the words of LAMMPS. No `Exception` is raised.
     """
-    outcome = "done"
+    outcome, (verb, *arguments) = "done", request
     try:
         payload = getattr(runner, verb)(*arguments)
     except RefusalError as error:
@@ -320,6 +320,34 @@ def leave() -> NoReturn:
     os._exit(0)
 
 
+def serve(
+    connection: Connection,
+    runner: Runner,
+    gone: Callable[[], bool],
+    broadcast: Callable[[tuple[Any, ...] | None], object] = lambda request: None,
+) -> NoReturn:
+    """Prepare LAMMPS, answer requests until the connection closes, and end the process; never return.
+
+    Args:
+        connection: to the parent.
+        runner: of this rank.
+        gone: whether the parent has ended, or a launcher between the two.
+        broadcast: called with each request before it is run, for other ranks, at the end with None.
+    """
+    threading.Thread(target=watch, args=(runner, gone), daemon=True).start()
+    broadcast(("prepare",))
+    with suppress(RefusalError):  # which the first `open` reports
+        runner.prepare()
+    try:
+        while True:
+            request = connection.recv()
+            broadcast(request)
+            send(connection, answer(runner, request))
+    except (EOFError, OSError):
+        broadcast(None)
+        leave()
+
+
 def main(connection_fd: int, board_fd: int, parent: int) -> None:
     """Answer requests until the pipe closes, and end the process; never return.
 
@@ -327,14 +355,5 @@ def main(connection_fd: int, board_fd: int, parent: int) -> None:
     `parent`: id of the process whose end is also the worker's.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole terminal group; the parent decides
-    connection = Connection(connection_fd)
-    runner = Runner(memoryview(mmap.mmap(board_fd, 16)).cast("q"), Alone())
-    threading.Thread(target=watch, args=(runner, lambda: os.getppid() != parent), daemon=True).start()
-    with suppress(RefusalError):  # which the first `open` reports
-        runner.prepare()
-    try:
-        while True:
-            verb, *arguments = connection.recv()
-            send(connection, answer(runner, verb, tuple(arguments)))
-    except (EOFError, OSError):
-        leave()
+    runner = Runner(memoryview(mmap.mmap(board_fd, 0)).cast("q"), Alone())
+    serve(Connection(connection_fd), runner, lambda: os.getppid() != parent)
