@@ -108,26 +108,6 @@ class ThroughError(UntrustedError):
     """The bodies went through each other, maybe due to load steps that are too large (`in_smaller_steps`)."""
 
 
-class ChainEndError(UntrustedError):
-    """The contact is wider than its chain."""
-
-
-class UnsteadyError(UntrustedError):
-    """A slide without steady state: its distance is too short compared with the deflection of the cantilever."""
-
-
-class OffEndError(UntrustedError):
-    """A plate that slid off the lower body."""
-
-
-class PartedError(UntrustedError):
-    """Bodies that do not sustain a tensile force."""
-
-
-class RestlessError(UntrustedError):
-    """A plate that does not relax."""
-
-
 class TensionError(UntrustedError):
     """A tensile force that the contact does not sustain, with the suggested fix, 0.9 of the pull-off force.
 
@@ -148,10 +128,6 @@ class TensionError(UntrustedError):
         )
         self.args = (force, most)
         self.most = most
-
-
-class DigitsError(UntrustedError):
-    """Forces below the round-off error of positions."""
 
 
 class SettingsError(Contact1dError, ValueError):

@@ -20,7 +20,7 @@ from contact1d.workflow.continuation.contact import Contact
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import require_trust
 from contact1d.workflow.deck.steps import Hold, Phase
-from contact1d.workflow.errors import RestlessError, ThroughError
+from contact1d.workflow.errors import ThroughError, UntrustedError
 from contact1d.workflow.model.dynamics import SOFTENING
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -151,9 +151,8 @@ def hold(
     those of the contact, with another drag.
 
     Raises:
-        RestlessError: neither happens within 50 load steps.
         ThroughError: the bodies went through each other.
-        UntrustedError: a state at rest is no result.
+        UntrustedError: neither happens within 50 load steps, or a state at rest is no result.
     """
     settings = settings or contact.settings
     near = at_rest(settings, scale)
@@ -178,7 +177,7 @@ def hold(
             )
         # A plate that is at rest while its contact is not gets a lower threshold.
         row = replace(row, start=int(Start.HERE), rest=row.rest * (0.5 if stands else 1.0))
-    raise RestlessError(
+    raise UntrustedError(
         f"the contact did not reach equilibrium under {load:.4g} FU within {MOST_HOLDS * row.steps} timesteps "
         f"(phase {state.phase}): the residual force is {unbalance:.2g} FU",
         "use more [damping] or [plate] damping",

@@ -26,7 +26,7 @@ from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import require_trust
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Phase, last_steps, phase_names, swept
-from contact1d.workflow.errors import DigitsError, TensionError
+from contact1d.workflow.errors import TensionError, UntrustedError
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Followed, Path
 from contact1d.workflow.scene import Bodies
@@ -188,7 +188,7 @@ class PlannedBranch(ContactBranch):
         digits = self.states[-1].residual * self.settings.chains.upper
         tensions = [-self.driver.held(state) for state in self.driver.peaks]
         if tensions and max(tensions) <= digits:
-            raise DigitsError(
+            raise UntrustedError(
                 f"the force maximum, about {self.scale:.2g} FU, is too small compared with {digits:.2g} FU, the "
                 "round-off error of the contact force",
                 "use a larger adhesion.work_of_adhesion, or a smaller preload",

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from contact1d.analysis.pressure import end_pressure_share
 from contact1d.digits import apart
 from contact1d.workflow.continuation.state import State
-from contact1d.workflow.errors import ChainEndError, DigitsError, ThroughError, UntrustedError
+from contact1d.workflow.errors import ThroughError, UntrustedError
 from contact1d.workflow.model.chain import decay_length, reflected
 from contact1d.workflow.model.settings import Settings, settings_for
 from contact1d.workflow.scene import Damping, Plate, Scene
@@ -25,9 +25,8 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
 
     Raises:
         ThroughError: a particle lies below the opposite surface.
-        DigitsError: on a rigid plane without relaxation, the round-off error of positions exceeds the tolerance.
-        UntrustedError: a residual force exceeds a tenth of the tolerance.
-        ChainEndError: the contact reaches the end of the chain.
+        UntrustedError: a residual force, or on a rigid plane without relaxation the round-off error of positions,
+            exceeds a tenth of the tolerance; or the contact reaches the end of the chain.
     """
     where = f"at displacement {state.displacement:.4g} LU (phase {state.phase})"
     if state.depth > 0.0:
@@ -41,7 +40,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
     if not (moving or scene.plate or scene.noise or is_converged(settings, state)):
         residual, limit = apart(state.residual, residual_limit(settings), 2)
         if scene.is_stepped:
-            raise DigitsError(
+            raise UntrustedError(
                 f"the forces are too small to resolve {where}: the round-off error of a position corresponds to "
                 f"{residual} FU, and a tolerance of {settings.tolerance:g} allows {limit} FU",
                 "use a larger load or displacement, or a larger [accuracy] tolerance",
@@ -53,7 +52,7 @@ def require_trust(scene: Scene, settings: Settings, state: State, moving: bool =
             + ", or a larger [accuracy] tolerance"
         )
     if scene.bodies.own_count is None and state.rule.is_cut(state.profile):
-        raise ChainEndError(
+        raise UntrustedError(
             f"the contact reaches the end of the chain {where}",
             f"use {_more_particles(scene, settings)}, or a smaller load",
             longer_chain(scene),

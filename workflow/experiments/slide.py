@@ -20,7 +20,7 @@ from contact1d.workflow.continuation.outcome import Outcome
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trust import doubts, require_trust
 from contact1d.workflow.deck.steps import Phase, UnderLoad, numbered
-from contact1d.workflow.errors import OffEndError, PartedError, RestlessError, UnsteadyError
+from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.experiments.experiment import Experiment
 from contact1d.workflow.experiments.motion import Motion, motion_of
 from contact1d.workflow.experiments.thermal import run_in
@@ -71,7 +71,7 @@ class SlideExperiment(Experiment[Slide]):
                     motion = motion_of(scene, settings, load, states)
                     context.left = outcome = outcome_of(motion, states, contact.phases)
         if self.given(scene).path is None and motion.unsteady:
-            raise UnsteadyError(motion.unsteady, LONGER)
+            raise UntrustedError(motion.unsteady, LONGER)
         return outcome
 
     def planned(self, scene: Scene, settings: Settings) -> tuple[Phase, ...]:
@@ -102,9 +102,8 @@ class SlideExperiment(Experiment[Slide]):
         """Apply the normal force [FU], compression positive, and return the state at rest, with the drag of the scene.
 
         Raises:
-            PartedError: the bodies separate under it.
-            UntrustedError: the plate does not come to rest along z or along x; on the path bodies pass through each
-                other, or the contact reaches the end of a chain.
+            UntrustedError: the bodies separate under it; the plate does not come to rest along z or along x; on the
+                path bodies pass through each other, or the contact reaches the end of a chain.
             EngineError: LAMMPS failed.
         """
         phase = self.loading(contact.scene, contact.settings, force)
@@ -112,7 +111,7 @@ class SlideExperiment(Experiment[Slide]):
         contact.begin(phase.name)
         held = hold(contact, force, scale, settings=_loading_settings(contact.settings))
         if not held.held:
-            raise PartedError(
+            raise UntrustedError(
                 f"the contact does not sustain {force:.4g} FU: the bodies separate", "use a smaller tension"
             )
         state = _settled_along_x(contact, force, scale, held.last)
@@ -216,8 +215,8 @@ def _settled_along_x(contact: Contact, force: float, scale: float, state: State)
         state: the state to begin with.
 
     Raises:
-        RestlessError: it does not come to rest.
-        UntrustedError: bodies pass through each other, or the contact reaches the end of a chain.
+        UntrustedError: it does not come to rest, bodies pass through each other, or the contact reaches the end of a
+            chain.
     """
     scene, settings = contact.scene, _loading_settings(contact.settings)
     steps = max(1, round(settings.motion.settle_time / settings.motion.time_step))
@@ -229,7 +228,7 @@ def _settled_along_x(contact: Contact, force: float, scale: float, state: State)
             return state
         state = contact.row(row)
     speed = state.motion["vcm(plate,x)"]
-    raise RestlessError(
+    raise UntrustedError(
         f"the plate did not come to rest along x under {force:.4g} FU within {MOST_HOLDS * steps} timesteps: it "
         f"moves at {speed:.2g} LU/TU",
         "use more [damping] or a stiffer cantilever",
@@ -240,11 +239,11 @@ def _require_contact(scene: Scene, settings: Settings, state: State) -> None:
     """Refuse a plate that has left the lower body, along it or off it; nothing is returned.
 
     Raises:
-        OffEndError: the contact is beyond the end of the lower body; not with periodic bodies.
-        PartedError: the bodies have separated: no particle is within the cutoff of the other body.
+        UntrustedError: the contact is beyond the end of the lower body, but not with periodic bodies; or the bodies
+            have separated: no particle is within the cutoff of the other body.
     """
     if state.smallest_distance > settings.forces.cutoff:
-        raise PartedError(
+        raise UntrustedError(
             f"the bodies separated while sliding, with the plate at {state.plate_x:.4g} LU",
             "use a larger normal_force, or a smaller tensile one" + (", or a lower temperature" if scene.noise else ""),
         )
@@ -254,7 +253,7 @@ def _require_contact(scene: Scene, settings: Settings, state: State) -> None:
     position = abs(state.plate_x + (scene.bodies.upper_offset or 0.0))
     half = contact_half_width(scene, settings)
     if position + half > end + scene.bodies.spacing:
-        raise OffEndError(
+        raise UntrustedError(
             f"the plate slid off the lower body: at {position:.4g} LU from the middle its half-width is {half:.4g} LU, "
             f"and the lower body ends at {end:.4g} LU",
             "use more bodies.particles, a shorter distance, or more [damping]",
