@@ -279,20 +279,18 @@ class Work:
             path the dissipated energy.
         uncertainty: of the area, by interpolation of F between load steps, ≥ 0 [FU·LU].
         whole: ∫ |F| |dd| ≥ 0 [FU·LU].
-        length: of the path, ∫ |dd| [LU].
     """
 
     area: float
     uncertainty: float
     whole: float
-    length: float
 
 
 def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | None:
     """Return the work along a path through points, (n,) [LU] and (n,) [FU].
 
     None with fewer than 3, or where nothing moves. It is ∫ F dd by the trapezoidal rule, F compression positive, d
-    positive in approach, with its uncertainty, ∫ |F| |dd| and the length of the path. Between two points a smooth curve
+    positive in approach, with its uncertainty and ∫ |F| |dd|. Between two points a smooth curve
     departs from its chord by h³F″/12, F″ from the chords before and after. Where the chord's slope is not the mean of
     these two, the force may have jumped, anywhere between the points: that part of its change may count for half of the
     increment h more or less. An unloading through the same displacements has the same error as the loading, so that
@@ -310,7 +308,7 @@ def work_of(displacement: Sequence[float], force: Sequence[float]) -> Work | Non
         turns = np.flatnonzero(np.diff(np.sign(h)) != 0.0) + 1
         legs = [leg for leg in np.split(np.arange(len(h)), turns) if h[leg[0]] != 0.0]
         uncertainty = sum(_missed(np.abs(h[leg]), np.diff(f)[leg]) for leg in legs)
-    return Work(float(mean @ h), uncertainty, float(np.abs(mean) @ np.abs(h)), float(np.abs(h).sum()))
+    return Work(float(mean @ h), uncertainty, float(np.abs(mean) @ np.abs(h)))
 
 
 def closes(displacement: Sequence[float], force: Sequence[float], tolerance: float) -> bool:

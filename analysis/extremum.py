@@ -38,22 +38,19 @@ class EstimatedPosition:
     Attributes:
         position: the estimate.
         uncertainty: it covers the error in at least 95 % of random cases; ≥ 0.
-        at_end: whether it is at the first or last sample, so that the true position may lie beyond.
     """
 
     position: float
     uncertainty: float
-    at_end: bool = False
 
 
 def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> EstimatedPosition:
     """Return the position of the minimum of y(x) near the lowest of the candidate samples, with its uncertainty.
 
     Where the lowest (of equal ones the first) is the first or the last sample of x it is that sample, uncertain by a
-    spacing; `at_end` is true then, and where a candidate as low, but for noise, is the first or last sample. The
-    uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without noise and with
-    white noise of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps, the minimum is
-    anywhere between two samples.
+    spacing. The uncertainty covers the error in at least 95 % of random closed-form cases (see the module), without
+    noise and with white noise of up to 1 % of the depth, and of skewed dips at least 0.3 spacings wide; where y jumps,
+    the minimum is anywhere between two samples.
 
     Args:
         x: positions, ascending, (n,), n >= 3.
@@ -63,7 +60,7 @@ def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Est
     last = len(x) - 1
     index = int(candidates[np.argmin(y[candidates])])
     if index in (0, last):
-        return EstimatedPosition(float(x[index]), spacing_of(x), True)
+        return EstimatedPosition(float(x[index]), spacing_of(x))
     noise = _noise(y, index)
     likely = candidates[y[candidates] <= y[index] + 5.0 * noise]  # each of these may be the lowest one, but for noise
     first, final = int(likely[0]), int(likely[-1])
@@ -75,7 +72,7 @@ def position_of_minimum(x: Array, y: Array, candidates: NDArray[np.intp]) -> Est
     open_towards_others = (first == candidates[0] and first > 0) or (final == candidates[-1] and final < last)
     inside = 0.25 * extent if final - first > 1 else 0.0  # interpolation resolves two neighbours that tie
     spread = extent if open_towards_others else inside
-    return EstimatedPosition(minimum.position, max(minimum.uncertainty, spread), first == 0 or final == last)
+    return EstimatedPosition(minimum.position, max(minimum.uncertainty, spread))
 
 
 def _noise(y: Array, index: int, reach: int = 20, highest_order: int = 12) -> float:

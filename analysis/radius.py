@@ -36,15 +36,12 @@ class ContactRadius:
         value: (right − left)/2 ≥ 0 [LU]; 0 where there is no contact, or a single spot.
         uncertainty: estimated [LU]; it covers the error in at least 95 % of random cases.
         left, right: positions of the edges [LU].
-        reaches_end: whether an edge is at the chain's end: the chain is too short, and the true radius may be larger
-            than value + uncertainty.
     """
 
     value: float
     uncertainty: float
     left: float
     right: float
-    reaches_end: bool
 
 
 def tensile_radius(profile: Profile) -> ContactRadius:
@@ -52,7 +49,7 @@ def tensile_radius(profile: Profile) -> ContactRadius:
 
     The centre is the mean of x weighted with |p|. The value is half the distance of both minima; a contact that has
     shrunk to one tensile spot has radius 0: the minimum is the same on both sides. An edge at the first or last
-    particle is uncertain by a spacing, and `reaches_end` is true. The interpolation of `analysis.extremum` has a median
+    particle is uncertain by a spacing. The interpolation of `analysis.extremum` has a median
     error of 3e-4 spacings s, 0.04 where particles snap. A radius a below 3 s is uncertain by 1.2 (s - a/3) at least:
     over 6900 random contacts of independent pairs in closed form, with bodies as sharp as two spacings, that covers at
     least 94 % of the errors of every size of contact; without, 85 to 90 %. Source: Geike and Popov 2007, Section 3.2
@@ -85,7 +82,7 @@ def compressive_radius(profile: Profile, residual: float = 0.0) -> ContactRadius
     straight line through two overshoots by up to s^2/a with the spacing s. The edge is kept between the outermost
     loaded particle and the next. Where the parabola has no zero there (few particles, a load concentrated at the edge,
     a soft law's tail) it is halfway, within half a spacing. Where the last particle of the chain is loaded it is the
-    edge, uncertain by a spacing, and `reaches_end` is true. No load at all: radius 0 at the middle of the chain,
+    edge, uncertain by a spacing. No load at all: radius 0 at the middle of the chain,
     uncertain by half a spacing.
 
     Args:
@@ -112,7 +109,6 @@ def held_radius(profile: Profile) -> ContactRadius:
     parabola through the three before it. With fewer than 5 loaded particles, or where that share is not within −0.05 …
     1.05, the edge is at the last loaded particle, within half a spacing. A particle is loaded where its pressure is not
     exactly 0. Where all pressures are 0 the radius is 0 at the middle of the chain, uncertain by half a spacing.
-    `reaches_end` is true where an end of the chain is loaded.
 
     Args:
         profile: of a chain of evenly spaced particles, n >= 3.
@@ -233,11 +229,11 @@ def _extremes(profile: Profile) -> tuple[float, float]:
 def _between(left: EstimatedPosition, right: EstimatedPosition) -> ContactRadius:
     """Return half the distance of two edges, 0 where the left one is beyond the right one; uncertain by their mean.
 
-    `reaches_end` is true where one of the edges is at an end. `left` and `right` are the positions as they are.
+    `left` and `right` are the positions as they are.
     """
     value = max(0.0, 0.5 * (right.position - left.position))
     uncertainty = 0.5 * (left.uncertainty + right.uncertainty)
-    return ContactRadius(value, uncertainty, left.position, right.position, left.at_end or right.at_end)
+    return ContactRadius(value, uncertainty, left.position, right.position)
 
 
 def _of_edges(
@@ -259,7 +255,7 @@ def _of_edges(
     carrying, end = np.flatnonzero(carries), len(x) - 1
     if carrying.size == 0:
         middle = float(0.5 * (x.max() + x.min()))
-        return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle, False)
+        return ContactRadius(0.0, 0.5 * spacing_of(x), middle, middle)
     first, last = int(carrying[0]), int(carrying[-1])
     edges = []
     for positions, pressures, least, most in ((x, p, first, last), (-x[::-1], p[::-1], end - last, end - first)):
@@ -267,7 +263,7 @@ def _of_edges(
         near = slice(low, most + 2)
         edges.append(edge(positions[near].tolist(), pressures[near].tolist(), least - low, most - low))
     right, mirrored = edges
-    return _between(EstimatedPosition(-mirrored.position, mirrored.uncertainty, mirrored.at_end), right)
+    return _between(EstimatedPosition(-mirrored.position, mirrored.uncertainty), right)
 
 
 def _zero(x: list[float], p: list[float], first: int, last: int, residual: float) -> EstimatedPosition:
@@ -276,7 +272,7 @@ def _zero(x: list[float], p: list[float], first: int, last: int, residual: float
     It is the falling zero of the parabola through the last three loaded particles, uncertain by the difference from
     that of the three up to the last but one and by `residual`, at most by a spacing. It is halfway to the next
     particle, within half a spacing, where the parabola has no such zero before that, or fewer are loaded. If the last
-    particle of the chain is loaded, it is that (`at_end`), uncertain by a spacing.
+    particle of the chain is loaded, it is that, uncertain by a spacing.
 
     Args:
         x, p: positions, and pressures over the largest one.
@@ -284,7 +280,7 @@ def _zero(x: list[float], p: list[float], first: int, last: int, residual: float
         residual: error of each of these pressures.
     """
     if last == len(x) - 1:
-        return EstimatedPosition(x[last], x[last] - x[last - 1], True)
+        return EstimatedPosition(x[last], x[last] - x[last - 1])
     inner, outer = x[last], x[last + 1]
     zero, compared = (
         _parabola_zero(x[end - 2 : end + 1], p[end - 2 : end + 1], inner, outer, residual)
@@ -337,15 +333,14 @@ def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Estimat
     """Return the right edge of a contact whose pressure jumps to 0 at it, in the unit of x, with its uncertainty.
 
     It is the position of the last loaded particle, within half a spacing, where fewer than 5 particles are loaded or
-    the share of the last cell is not within −0.05 … 1.05; a share beyond 0 … 1 counts as 0 or 1. `at_end` is true where
-    the last particle of the chain is loaded.
+    the share of the last cell is not within −0.05 … 1.05; a share beyond 0 … 1 counts as 0 or 1.
 
     Args:
         x, p: positions and pressures, evenly spaced.
         first, last: indices of the first and the last loaded particle.
     """
     spacing = (x[-1] - x[0]) / (len(x) - 1)
-    somewhere = EstimatedPosition(x[last], 0.5 * spacing, last == len(x) - 1)
+    somewhere = EstimatedPosition(x[last], 0.5 * spacing)
     if last - first <= PARABOLA_POINTS:  # the parabola would include the other edge
         return somewhere
     *inner, carried = p[last - PARABOLA_POINTS : last + 1]
@@ -354,7 +349,7 @@ def _held_edge(x: list[float], p: list[float], first: int, last: int) -> Estimat
         return somewhere
     share = min(max(parabola, 0.0), 1.0)
     off = min(0.5, abs(parabola - straight)) * spacing
-    return EstimatedPosition(x[last] + (share - 0.5) * spacing, off, somewhere.at_end)
+    return EstimatedPosition(x[last] + (share - 0.5) * spacing, off)
 
 
 def _share(carried: float, inner: list[float], steps: int = 10) -> float:

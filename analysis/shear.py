@@ -50,7 +50,7 @@ def stick_radius(profile: Profile, coefficient: float, direction: int) -> Contac
     Value and uncertainty are 0 where all particles slip. As a pressure without attraction, the margin is a smooth
     function of x inside the zone and 0 outside: its zero is that of a parabola through the outermost particles that
     stick; without a zero before the next particle it is halfway to that. Where an end of the chain sticks it is the
-    edge, and `reaches_end` is true.
+    edge.
 
     Args:
         profile: pressure p and shear of the lower body on the upper one [FU/LU], n ≥ 3 particles.
@@ -71,17 +71,15 @@ class Slip:
 
     Attributes:
         force: tangential force after the step [FU].
-        distance: slip of each particle, positive along +x [LU]; 0 where it sticks.
         work: ≥ 0, dissipated by the slip [FU·LU].
     """
 
     force: Array
-    distance: Array
     work: Array
 
 
 def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness: float) -> Slip:
-    """Return force, slip and dissipated work of springs whose ends move while the limits of their forces change.
+    """Return force and dissipated work of springs whose ends move while the limits of their forces change.
 
         s₁ = clip(s₀ + k Δu, ±B₁)
 
@@ -103,7 +101,7 @@ def slip(force: Array, pushed: Array, limit: Array, next_limit: Array, stiffness
     with np.errstate(over="ignore"):  # of a tiny displacement
         begins = np.divide(side * limit - force, faster, out=np.zeros_like(force), where=faster != 0.0)
     at_begin = limit + np.clip(begins, 0.0, 1.0) * (next_limit - limit)
-    return Slip(after, distance, np.abs(distance) * 0.5 * (at_begin + next_limit))
+    return Slip(after, np.abs(distance) * 0.5 * (at_begin + next_limit))
 
 
 def kinks_of(stick: Sequence[float], contact: Sequence[float]) -> list[list[float]]:

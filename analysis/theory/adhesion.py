@@ -147,16 +147,6 @@ class MaugisDugdale(Dmt):
         sphere = self.radius, self.contact_modulus, self.work_of_adhesion
         return {Theory.JKR: PowerLaw.sphere(*sphere), Theory.DMT: Dmt(*sphere), Theory.MAUGIS: self}
 
-    def ring_width(self, contact_radius: float) -> float:
-        """Return c - a [length], the width of the ring under attraction around a contact of radius a >= 0 [length].
-
-        There the gap at c times sigma_0 is W. It is found by bracketing to round-off.
-
-        Raises:
-            ValueError: if a is negative.
-        """
-        return self._length * _ring_width(self.transition, contact_radius / self._length)
-
     def force(self, contact_radius: float) -> float:
         """Return F = pi W R N [force], positive in compression, N = A^3 - lambda [A S + C^2 phi]; a >= 0 [length].
 

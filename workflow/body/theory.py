@@ -428,7 +428,7 @@ def _oblique(case: Case) -> str:
 
 def _sticks(case: Case) -> str:
     """Return text that states the condition of an oblique impact without slip, for a power of the radius; else ""."""
-    return "an oblique impact without slip" if _oblique(case) and case.kind in ("parabola", "cone", "power") else ""
+    return "an oblique impact without slip" if _oblique(case) and case.scene.bodies.profile.degree else ""
 
 
 def _sliding_values(case: Case) -> Values:
@@ -460,8 +460,7 @@ def indented(case: Case) -> Indented | None:
         ValueError: the largest displacement is below 0.
     """
     given: Any = case.scene.experiment
-    exponents = {"parabola": 2.0, "cone": 1.0}
-    exponent = exponents.get(case.kind) or getattr(case.scene.bodies.profile, "exponent", None)
+    exponent = case.scene.bodies.profile.degree
     terms, displacements = case.law.series(case.scene), given.places()
     if not (terms and exponent and displacements):
         return None

@@ -93,7 +93,7 @@ class Branch(ContactBranch):
         """
         self._turn(not self.states or positions[-1] >= self._last.displacement)
         self._begin_phase()
-        self._append(self.contact.rows(displacements([float(position) for position in positions])))
+        self._append(self.contact.rows(displacements(positions)))
         self._record_target(math.nan)
 
     def hold(self, duration: float, displacement: float | None, force: float | None, approach_steps: int = 20) -> None:
@@ -115,15 +115,6 @@ class Branch(ContactBranch):
             self._move(approach)
         self.begin(name)
         self._move([DisplaceInTime(displacement, steps) for steps in self.settings.steps_of(duration)])
-
-    def _move(self, rows: Sequence[DisplaceInTime]) -> None:
-        """Run load steps in time and keep their states, which need not be at rest.
-
-        Raises:
-            UntrustedError: bodies went through each other, or the contact reaches the end of the chain.
-        """
-        self._begin_phase()
-        self._append(self.contact.rows(rows, moving=True))
 
     # --- a force
 

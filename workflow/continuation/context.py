@@ -23,7 +23,7 @@ from contact1d.workflow.continuation.reduction import Reduction
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.deck.deck import Deck
-from contact1d.workflow.deck.steps import Fly, launch, numbered
+from contact1d.workflow.deck.steps import Fly, Row, launch, numbered
 from contact1d.workflow.deck.system import write_system
 from contact1d.workflow.engine.progress import Progress
 from contact1d.workflow.engine.session import Engine
@@ -247,12 +247,11 @@ class ContactBranch:
         self._turn(rises=True)
         for name, row in (("touching", launch(self.scene, velocity, steps)), ("impact", Fly(steps))):
             self.begin(name)
-            self._begin_phase()
-            self._append(self.contact.rows([row], moving=True))
+            self._move([row])
         while not is_over([state.displacement for state in self.states], [state.force for state in self.states]):
             if len(self.states) > longest * STRETCHES:
                 raise UntrustedError("the body does not end its impact: use shorter times of [viscoelasticity]")
-            self._append(self.contact.rows([Fly(steps)] * FLIGHT, moving=True))
+            self._move([Fly(steps)] * FLIGHT)
 
     def mark(self, name: str) -> None:
         """Report the last state under a name, and have its atoms written to states.lammpstrj.
@@ -293,6 +292,15 @@ class ContactBranch:
         self.legs += [self._number + self._turned] * len(states)
         self.states += states
         self._turned = False
+
+    def _move(self, rows: Sequence[Row]) -> None:
+        """Run load steps in time and keep their states, which need not be at rest.
+
+        Raises:
+            UntrustedError: bodies went through each other, or the contact reaches the end of the chain.
+        """
+        self._begin_phase()
+        self._append(self.contact.rows(rows, moving=True))
 
     def _record_target(self, force: float) -> None:
         """Record in `wanted` the force [FU], compression positive, that the last state was to carry; not NaN."""

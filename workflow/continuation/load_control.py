@@ -168,10 +168,8 @@ class LoadBranch(ContactBranch):
             self.begin("approaching")
             self.reach(0.0, self.scale)
         self.begin(name)
-        self._begin_phase()
         self._turn(rises=force >= 0.0)
-        rows = [UnderLoad(force, steps) for steps in self.settings.steps_of(duration)]
-        self._append(self.contact.rows(rows, moving=True))
+        self._move([UnderLoad(force, steps) for steps in self.settings.steps_of(duration)])
 
     def holds_more(self, force: float, doubtful_share: float = 0.9) -> bool:
         """Return whether a tension larger by two tolerances than that of `force` [FU] < 0 is sustained, too.

@@ -73,9 +73,7 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
     if model.parted is None:  # the contact ends at no fixed displacement
         after = next(i for i, position in enumerate(d) if position < start)
         tail, path = np.asarray([0.0, *force[after:]]), np.asarray([start, *d[after:]])
-        value, coarse = (
-            float(np.trapezoid(tail[rows], path[rows])) for rows in (slice(None), _every_second(path.size))
-        )
+        value, coarse = (float(np.trapezoid(tail[rows], path[rows])) for rows in (slice(None), _each(2, path.size)))
         return {"work_of_separation": Reading(value, ENERGY, {"sampling": abs(value - coarse)})}
     positions, forces = np.asarray([*held, (start, 0.0)]).T
 
@@ -91,7 +89,7 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
         u, weights = gauss(nodes)
         u = 0.5 * (u + 1.0)
         between = end + (start - end) * u**2
-        chosen = [*range(0, len(positions) - 1, every), len(positions) - 1]
+        chosen = _each(every, len(positions))
         off = forces[chosen] - model.held(positions[chosen])
         curve = model.held(between) + np.interp(between, positions[chosen], off, left=0.0)
         return -(start - end) * float(weights @ (u * curve))
@@ -101,9 +99,9 @@ def _separation(branch: Trace, peak: Peak, separated: float = 0.02, nodes: int =
     return {"work_of_separation": Reading(value, ENERGY, {"sampling": missed})}
 
 
-def _every_second(count: int) -> list[int]:
-    """Return the indices 0, 2, 4, … below the last of `count` states, and the last one; [−1] for 0 states."""
-    return [*range(0, count - 1, 2), count - 1]
+def _each(step: int, count: int) -> list[int]:
+    """Return the indices 0, `step`, 2 `step`, … below the last of `count` states, and the last one; [−1] for 0."""
+    return [*range(0, count - 1, step), count - 1]
 
 
 def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: float) -> Reading:
@@ -123,8 +121,8 @@ def _critical_radius(branch: Trace, peak: Peak, settings: Settings, missed: floa
         near = int(np.argmin(np.abs(d - peak.position)))
         rate = abs(radius_rate(branch, near))
         radius = radius_at(branch, peak.position)
-        errors = {"sampling": POSITION_FACTOR * rate * peak.misplaced}
         error = POSITION_FACTOR * peak.misplaced
+        errors = {"sampling": rate * error}
         positions = np.asarray([d[near], peak.position, peak.position - error, peak.position + error], dtype=np.float64)
         if (known := branch.model.radii(positions)) is not None:  # of a stiff contact it rises from 0 as a root
             nearest, expected, *ends = known.tolist()

@@ -263,7 +263,7 @@ def swept(columns: Mapping[str, NDArray[np.float64]]) -> list[Row]:
     return [kind(*numbers) for numbers in zip(*(column.tolist() for column in columns.values()), strict=True)]
 
 
-def displacements(positions: Sequence[float]) -> tuple[Displace, ...]:
+def displacements(positions: Iterable[float]) -> tuple[Displace, ...]:
     """Return rows that set the plate to each of the displacements [LU], compression positive, in order; () for none."""
     return tuple(Displace(float(position)) for position in positions)
 

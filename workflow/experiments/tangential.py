@@ -206,7 +206,7 @@ class SlidState:
             return stick_radius(profile, coefficient, self.direction)
         edge = self.trace.contact(self.state)
         sticks = edge is not None and stick_margin(profile, coefficient, self.direction).any()
-        return edge if sticks and edge is not None else ContactRadius(0.0, 0.0, 0.0, 0.0, reaches_end=False)
+        return edge if sticks and edge is not None else ContactRadius(0.0, 0.0, 0.0, 0.0)
 
 
 def slid_states(trace: Trace, scene: Scene) -> list[SlidState]:

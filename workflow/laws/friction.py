@@ -31,12 +31,11 @@ class JenkinsElements:
     """The Jenkins elements of particles: springs in series with a slider.
 
     Attributes:
-        x, heights: positions and undeformed heights of the particles [LU], (n,).
+        heights: undeformed heights of the particles [LU], (n,).
         normal, tangential: stiffnesses of one element [FU/LU].
         coefficient: coefficient of friction μ.
     """
 
-    x: Array
     heights: Array
     normal: float
     tangential: float
@@ -88,7 +87,7 @@ def elements_of(scene: Scene, x: Array) -> JenkinsElements:
     """Return the Jenkins elements of a scene with [friction], at positions x, (n,) [LU], relative to the apex."""
     heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
     stiffnesses = scene.bulk_stiffness, scene.tangential_stiffness
-    return JenkinsElements(x, heights, *stiffnesses, scene.the(Friction).coefficient)
+    return JenkinsElements(heights, *stiffnesses, scene.the(Friction).coefficient)
 
 
 def stops(experiment: Tangential, elements: JenkinsElements) -> list[Stop]:
@@ -160,7 +159,7 @@ class SlidingSprings(Springs):
         """Jenkins elements of these particles."""
         heights = np.asarray(self.shape.height(np.abs(self.x)), dtype=np.float64)
         normal = self.law.stiffness
-        return JenkinsElements(self.x, heights, normal, self.law.ratio * normal, self.law.coefficient)
+        return JenkinsElements(heights, normal, self.law.ratio * normal, self.law.coefficient)
 
     def energies(self, path: Path) -> tuple[float, float]:
         """Return (elastic energy at the end of a path, dissipated work of slip along it), both [FU·LU].
@@ -227,9 +226,8 @@ class SlidingSprings(Springs):
     def _slid(self, path: Path) -> tuple[Array, Slip]:
         """Return (normal forces in each state, (m, n) [FU] ≥ 0; slip of each load step, (m − 1, n)) along a path.
 
-        A slip has the tangential force at the end of the step [FU], the distance slipped [LU] and the work dissipated
-        [FU·LU]. The force is that of the springs, positive after a motion along +x; it begins with 0 in the first
-        state.
+        A slip has the tangential force at the end of the step [FU] and the work dissipated [FU·LU]. The force is
+        that of the springs, positive after a motion along +x; it begins with 0 in the first state.
         """
         chain = self.chain
         overlap = np.maximum(path.displacement[:, None] - chain.heights, 0.0)

@@ -105,14 +105,6 @@ class Cells:
         share = self.shares(displacements)
         return np.asarray(share * (displacements[:, None] - self.heights + self.fall * (1.0 - share)))
 
-    def forces(self, displacements: Array, stiffness: float) -> Array:
-        """Return the sum F of the forces of all cells, (m,) [FU], compression positive, at displacements (m,) [LU].
-
-        Bodies are taken to be in contact, also below the displacement at which they separate. `stiffness`: of one
-        particle [FU/LU].
-        """
-        return np.asarray(stiffness * self.lengths(displacements).sum(axis=1))
-
 
 @dataclass(frozen=True)
 class Jkr(Law):

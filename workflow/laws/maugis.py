@@ -480,11 +480,6 @@ class MaugisCells(ZonedCells):
 
     law: Maugis
 
-    @property
-    def apart(self) -> float:
-        """Displacement [LU] below which a contact that is unloaded has no force."""
-        return float(self.law.held.displacement[0])
-
     def held(self, displacements: Array) -> Array:
         """Return F of the continuous contact, (m,) [FU], compression positive, in unloading, at displacements (m,)
         [LU].

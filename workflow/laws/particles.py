@@ -144,8 +144,10 @@ class Particles(ABC):
         """Return the path along which the work of a run is compared with `energies`: many equilibria, from separated
         bodies on.
 
-        `finer`: factor on the number of states. Laws whose forces depend on time return the `path` itself.
+        `finer`: factor on the number of states. A law whose forces depend on time has the `path` itself.
         """
+        if self.law.in_time:  # its load steps have their times
+            return path
         return equilibria(path, self.apart, self.jumps, self.law.spacing, finer)
 
     def refined(self, history: History) -> History:

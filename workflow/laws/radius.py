@@ -53,7 +53,7 @@ class RadiusRule(ABC):
         So the pairs at an apex that just touch have a radius, too: the force maximum is nearer than the second
         particle, 1.5 spacings from an apex between two at most.
         """
-        return self.of(profile) or ContactRadius(0.0, 1.5 * self.bodies.spacing, 0.0, 0.0, reaches_end=False)
+        return self.of(profile) or ContactRadius(0.0, 1.5 * self.bodies.spacing, 0.0, 0.0)
 
     def is_cut(self, profile: Profile) -> bool:
         """Return whether the first or the last particle of the chain has a pressure other than 0: the contact reaches
@@ -129,7 +129,7 @@ class Held(RadiusRule):
 
 def _whole(bodies: Bodies, share: float) -> ContactRadius:
     """Return the half-width of a body [LU] as its contact radius, uncertain by a `share` of it."""
-    return ContactRadius(bodies.reach, share * bodies.reach, -bodies.reach, bodies.reach, reaches_end=False)
+    return ContactRadius(bodies.reach, share * bodies.reach, -bodies.reach, bodies.reach)
 
 
 class Given(RadiusRule):
@@ -150,7 +150,7 @@ class Given(RadiusRule):
         if not isinstance(profile, ZonedProfile):
             pulled = profile.pressure.min() < 0.0
             return tensile_radius(profile) if pulled else compressive_radius(profile, self.share)
-        return ContactRadius(profile.edge, profile.doubt, -profile.edge, profile.edge, reaches_end=False)
+        return ContactRadius(profile.edge, profile.doubt, -profile.edge, profile.edge)
 
     def is_cut(self, profile: Profile) -> bool:
         """Return whether the last particle of the chain has a force: contact or attraction reaches the end."""

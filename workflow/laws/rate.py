@@ -183,13 +183,6 @@ class RecedingCells(ZonedCells):
 
     dense = 4
 
-    @property
-    def apart(self) -> float:
-        """Displacement [LU] of pull-off under fixed grips in the limit of a slow motion; a faster contact is lost below
-        it.
-        """
-        return self.law.fixed_grips[1]
-
     def held(self, displacements: Array) -> Array:
         """Return F of the continuous contact in equilibrium, (m,) [FU], compression positive, at displacements (m,)
         [LU].
@@ -209,10 +202,6 @@ class RecedingCells(ZonedCells):
         edge = self.law.edges(path.time, path.displacement)
         no_width = np.zeros_like(edge)
         return Zone(edge, edge, path.displacement, self.law.equations.forces(edge, no_width, path.displacement))
-
-    def checked(self, path: Path, finer: int) -> Path:
-        """Return the path itself, since its load steps have their times; `finer` is not used."""
-        return path
 
     def energies(self, path: Path) -> tuple[float, float]:
         """Return (U(d, a) of JKR at the end of a path, energy lost along it), both [FU·LU].

@@ -248,10 +248,6 @@ class RelaxingSprings(Particles):
         zone = (edge, edge, self._jumps(edge, displacements, velocities), doubt, self._layers(edge, spent, velocities))
         return Followed(self.x, forces @ counts, lambda state: forces[state][indices], zone=zone)
 
-    def checked(self, path: Path, finer: int) -> Path:
-        """Return the path itself, since its load steps have their times; `finer` is not used."""
-        return path
-
     def energies(self, path: Path) -> tuple[float, float]:
         """Return (energy of springs and arms at the end of a path, energy dissipated along it), both [FU·LU].
 

@@ -112,6 +112,14 @@ class ZonedCells(Particles):
     law: Zoned
     shares_edges = True
 
+    @property
+    def apart(self) -> float:
+        """Displacement [LU] at which a contact that is unloaded slowly is lost, below which it has no force.
+
+        A contact whose edge recedes at a finite speed is lost below it.
+        """
+        return self.law.fixed_grips[1]
+
     def _edges_of(self, zone: Zone) -> dict[str, Array]:
         """Return the columns of states by name, (m,) [LU] each: "displacement" d, "edge" a, "reach" c and "height".
 
