@@ -134,7 +134,7 @@ def _differences() -> Array:
     node, weight = gauss(NODES)
     powers = np.polynomial.legendre.legvander(node, NODES - 1)
     slopes = np.polynomial.legendre.legvander(node, NODES - 2) @ np.polynomial.legendre.legder(np.eye(NODES))
-    return np.asarray(weight[:, None] * np.linalg.solve(powers.T, slopes.T).T)
+    return weight[:, None] * np.linalg.solve(powers.T, slopes.T).T
 
 
 def _graded(width: Array, smooth: Array, halvings: int = 20) -> Array:
@@ -150,7 +150,7 @@ def _graded(width: Array, smooth: Array, halvings: int = 20) -> Array:
     """
     half, least = 0.5 * width[..., None], np.clip(smooth, 0.5**halvings * width, 0.5 * width)[..., None]
     count = math.ceil(np.log2((half / least).max()))
-    return np.asarray(least * (half / least) ** np.linspace(0.0, 1.0, count + 1))
+    return least * (half / least) ** np.linspace(0.0, 1.0, count + 1)
 
 
 @lru_cache(maxsize=64)

@@ -24,4 +24,4 @@ def extrapolated(coarse: Numbers, fine: Numbers, finest: Numbers) -> Array:
     """
     first, second = np.abs(np.subtract(coarse, fine)), np.abs(np.subtract(fine, finest))
     share = np.minimum(second, SLOWEST * first) / np.maximum(first, TINY)
-    return np.asarray(np.where(second > first, first + 2.0 * second, first / (1.0 - share)))
+    return np.where(second > first, first + 2.0 * second, first / (1.0 - share))

@@ -52,7 +52,7 @@ def autocovariance(residual: Array) -> Array:
     The mean of the residual is not subtracted.
     """
     power = np.abs(np.fft.rfft(residual, 2 * len(residual))) ** 2
-    return np.asarray(np.fft.irfft(power)[: len(residual)] / len(residual))
+    return np.fft.irfft(power)[: len(residual)] / len(residual)
 
 
 def noise_in(residual: Array) -> Noise:

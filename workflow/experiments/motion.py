@@ -356,4 +356,4 @@ def _integrals(states: Sequence[State], rows: Sequence[DriveLeg], mean: int, end
     span, step = recorded(rows, ("row_time", "time_step")).values()
     count = np.floor(recorded(states, ("step",))["step"] / every) + 1.0
     means = np.diff(count * _read(states, f"f_cantilever_means[{mean}]")) / np.diff(count)
-    return np.asarray(means * span - 0.5 * every * step * np.diff(ends))
+    return means * span - 0.5 * every * step * np.diff(ends)

@@ -129,13 +129,13 @@ class Dugdale:
         """
         node, weight = gauss(nodes)
         half = 0.5 * (high - low)
-        return np.asarray(half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight))
+        return half * (self.profile.height(0.5 * (low + high)[:, None] + half[:, None] * node) @ weight)
 
     def area(self, x: Array) -> Array:
         """Return G(x) = ∫₀ˣ g dx of the transformed profile, (n,) [LU²], at positions x, 0 … `known`, (n,) [LU]."""
         knots, areas = self._areas
         cell = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, knots.size - 1)
-        return np.asarray(areas[cell] + self._integral(knots[cell], x))
+        return areas[cell] + self._integral(knots[cell], x)
 
     def _pressed(self, edge: Array, width: Array) -> Array:
         """Return ∫₀ᵃ g/√(c² − x²) dx of the transformed profile g, (n,) [LU], at `edge` a and `width` s, (n,) [LU].
@@ -164,11 +164,11 @@ class Dugdale:
         # c − a without a difference of nearly equal numbers
         ahead = width * width / np.maximum(c + edge, TINY)
         elastic = displacement * angle - self._pressed(edge, width) - self.ratio * ahead
-        return np.asarray(self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range)
+        return self.surface.height(c) - displacement + 2.0 / math.pi * elastic - self.range
 
     def smooth(self, edge: Array, width: Array) -> Array:
         """Return d, (m,) [LU], without a singular stress at `edge` a, with `width` s = √(c² − a²), (m,) [LU]."""
-        return np.asarray(self.profile.height(edge) - self.ratio * width)
+        return self.profile.height(edge) - self.ratio * width
 
     def states(self, edge: Array, width: Array) -> Zone:
         """Return the states (a, c, d, F), (m,) each, of contacts with `edge` a and `width` s = √(c² − a²), (m,) [LU].
@@ -193,7 +193,7 @@ class Dugdale:
         s = √(c² − a²), with the radius c up to which the attraction acts.
         """
         ring = 0.5 * ((edge**2 + width**2) * np.arctan2(width, edge) - edge * width)
-        return np.asarray(2.0 * self.modulus * (edge * displacement - self.area(edge)) - 4.0 * self.stress * ring)
+        return 2.0 * self.modulus * (edge * displacement - self.area(edge)) - 4.0 * self.stress * ring
 
     def widths(self, edge: Array) -> Array:
         """Return s = √(c² − a²), (m,) [LU], in equilibrium of contacts of the radii `edge` a, (m,) [LU].
@@ -229,7 +229,7 @@ class Dugdale:
 
         −h₀ at the radius 0.
         """
-        return np.asarray(self.surface.height(reach) - 2.0 / math.pi * self.ratio * reach - self.range)
+        return self.surface.height(reach) - 2.0 / math.pi * self.ratio * reach - self.range
 
 
 def covered(reach: float) -> SettingsError:

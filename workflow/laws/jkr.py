@@ -49,7 +49,7 @@ def elongation(x: Array, modulus: float, work: float) -> Array:
 
     `modulus`: E* [FU/LU²]; `work`: work of adhesion W [FU/LU].
     """
-    return np.asarray(np.sqrt(2.0 * math.pi * work / modulus * x))
+    return np.sqrt(2.0 * math.pi * work / modulus * x)
 
 
 def _from_share(share: float, middle: float) -> tuple[float, float]:
@@ -95,7 +95,7 @@ class Cells:
         """
         heights = self.heights - displacements[:, None]
         q = np.clip((self.hold - heights) / self.width, 0.0, 1.0)
-        return np.asarray(q * (1.0 + self.bend * (1.0 - q)))
+        return q * (1.0 + self.bend * (1.0 - q))
 
     def lengths(self, displacements: Array) -> Array:
         """Return the force over the stiffness of each particle, (m, n) [LU], at displacements (m,) [LU].
@@ -103,7 +103,7 @@ class Cells:
         Compression is positive. Bodies are taken to be in contact, also below the displacement at which they separate.
         """
         share = self.shares(displacements)
-        return np.asarray(share * (displacements[:, None] - self.heights + self.fall * (1.0 - share)))
+        return share * (displacements[:, None] - self.heights + self.fall * (1.0 - share))
 
 
 @dataclass(frozen=True)
@@ -210,7 +210,7 @@ class Jkr(Law):
 
         g is the transformed profile of the `body`, by default that of the law.
         """
-        return np.asarray((body or self.profile).height(x) - elongation(x, self.modulus, self.work))
+        return (body or self.profile).height(x) - elongation(x, self.modulus, self.work)
 
     @cached_property
     def _grid(self) -> tuple[Array, Array, Array, int]:
@@ -348,7 +348,7 @@ class Jkr(Law):
         Maugis it is F in unloading, 0 below the displacement at which the contact is lost.
         """
         _, h, force, least = self._grid
-        return np.asarray(np.interp(displacements, h[least:], force[least:], left=0.0))
+        return np.interp(displacements, h[least:], force[least:], left=0.0)
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
         """Return the contact radii a(d) of bodies in contact, (m,) [LU], at displacements (m,) [LU]; one spacing at
@@ -366,7 +366,7 @@ class Jkr(Law):
         is a(d) in unloading, 0 where the bodies attract each other without contact.
         """
         x, h, _, least = self._grid
-        return np.asarray(np.interp(displacements, h[least:], x[least:]))
+        return np.interp(displacements, h[least:], x[least:])
 
     @cached_property
     def _rising(self) -> tuple[Array, Array]:
@@ -445,7 +445,7 @@ class JkrCells(Particles):
         stable.
         """
         cells, count = self._once
-        return np.asarray(self.law.stiffness * (cells.lengths(displacements) @ count))
+        return self.law.stiffness * (cells.lengths(displacements) @ count)
 
     @property
     def limits(self) -> tuple[float, ...]:

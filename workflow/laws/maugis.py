@@ -235,7 +235,7 @@ class Maugis(Zoned):
             """Return s = √(c² − a²), (m,) [LU], at a and d, (m,) [LU], without a singular stress at a; 0 where d >
             g(a).
             """
-            return np.asarray(np.maximum(self.profile.height(edge) - d, 0.0) / self.equations.ratio)
+            return np.maximum(self.profile.height(edge) - d, 0.0) / self.equations.ratio
 
         def error(edge: Array, d: Array) -> Array:
             """Return the gap at c less the range, (m,) [LU]."""
@@ -348,7 +348,7 @@ class Maugis(Zoned):
 
         Beyond the ends of the computed curve those at the ends, also where the contact is lost.
         """
-        return np.asarray(np.interp(displacements, self.held.displacement, self.held.reach))
+        return np.interp(displacements, self.held.displacement, self.held.reach)
 
     def require_one_edge(self) -> None:
         """Do nothing, and accept any profile: where the edge would jump, the curve of states has a limit point."""
@@ -434,7 +434,7 @@ def _between(column: Array, low: NDArray[np.intp] | int, values: Array) -> Array
     """
     rise = column[low + 1] - column[low]
     share = np.divide(values - column[low], rise, out=np.zeros_like(rise), where=rise > 0.0)
-    return np.asarray(low + np.clip(share, 0.0, 1.0))
+    return low + np.clip(share, 0.0, 1.0)
 
 
 def _with_range(jkr: Jkr, reach: float, surface: Profile, wanted: float, load: float) -> Maugis:

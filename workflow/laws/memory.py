@@ -224,7 +224,7 @@ class Memory:
 
         `counts`: number of particles of each cell, (n,).
         """
-        return np.asarray(self._part(margin) @ counts)
+        return self._part(margin) @ counts
 
     def go(self, displacement: float, time: float, velocity: float) -> None:
         """Move the body to a displacement [LU] in a time [TU], with a final velocity [LU/TU]; this changes the state in
@@ -256,7 +256,7 @@ class Memory:
             return np.asarray(self.surface * kept)
         separated = np.minimum(self.surface, -self._retarded * velocity)  # u where f = 0
         since = np.exp(np.minimum((separated - displacement + self._cells.heights) / (self._retarded * velocity), 0.0))
-        return np.asarray(np.where(self._touching, separated * since, self.surface * kept))
+        return np.where(self._touching, separated * since, self.surface * kept)
 
     def along(self, displacements: Array, times: Array, velocities: Array) -> tuple[Array, Array]:
         """Return (energies stored after the last load step, energies dissipated in all of them), (n,) each [LU²].
@@ -290,7 +290,7 @@ class Memory:
             released = np.where(ends > 0.0, 0.0, 0.5 * (separated**2 - surface[1:] ** 2))
             part = 0.5 * (self._part(begins) + self._part(ends))
             lost += np.sum(self._retarded * moved**2 / duration * part + released, axis=0)
-        return np.asarray(0.5 * (self._lasting * self.surface**2 + self._share @ self.arms**2)), lost
+        return 0.5 * (self._lasting * self.surface**2 + self._share @ self.arms**2), lost
 
     @property
     def _state(self) -> tuple[Array, ...]:

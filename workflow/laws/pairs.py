@@ -83,7 +83,7 @@ class Springs(Particles):
         """
         heights, indices = self.heights
         forces = self._forces(heights - displacements[:, None], np.ones(heights.size, dtype=bool))
-        return np.asarray(forces @ np.bincount(indices))
+        return forces @ np.bincount(indices)
 
     def carried(self, columns: Mapping[str, Array]) -> Followed:
         """Return the normal forces of load steps at the column "displacement", (m,) [LU]; other columns are not used.
@@ -104,7 +104,7 @@ class Springs(Particles):
 
         def force(state: int) -> Array:
             """Return the force of each particle, (n,) [FU], compression positive, in the state of index `state`."""
-            return np.asarray(self._forces(heights - displacements[state], memory[state])[indices])
+            return self._forces(heights - displacements[state], memory[state])[indices]
 
         return Followed(self.x, total, force)
 
@@ -128,7 +128,7 @@ class Springs(Particles):
         law = self.law
         inner = np.interp(gaps, law.gap, law.force, right=0.0)
         if not law.snaps or joined.all():
-            return np.asarray(inner)
+            return inner
         assert law.outer is not None
         return np.where(joined, inner, np.interp(gaps, law.outer, law.force, right=0.0))
 

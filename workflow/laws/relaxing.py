@@ -168,7 +168,7 @@ class RelaxingSprings(Particles):
         `displacements`: (m,) [LU]; F is 0 at 0 and below.
         """
         cells, _, counts = self._cells
-        return np.asarray(self.law.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts))
+        return self.law.stiffness * (np.maximum(displacements[:, None] - cells.heights, 0.0) @ counts)
 
     def durations(self, times: Array) -> Array:
         """Return the durations of load steps, (m,) [TU], that end at `times`, (m,) [TU].
@@ -288,7 +288,7 @@ class RelaxingSprings(Particles):
         """
         grown = np.maximum(np.diff(edge, prepend=0.0), 0.0) / spent / self.law.spacing
         arms = (term.share * term.time * np.exp(-term.time * grown) for term in self.law.material.terms)
-        return np.asarray(self.law.modulus * np.maximum(velocity, 0.0) * sum(arms) * (grown > 0.0))
+        return self.law.modulus * np.maximum(velocity, 0.0) * sum(arms) * (grown > 0.0)
 
     @cached_property
     def _outline(self) -> tuple[Array, Array]:

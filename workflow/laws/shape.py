@@ -126,4 +126,4 @@ def beside_kinks(positions: Array, kinks: Sequence[float], points: int = 60, mos
     distances = np.append(0.0, np.geomspace(ROUND_OFF, 0.1, points))
     near = [kink * (1.0 + sign * distances) for kink in kinks[:most_kinks] for sign in (1.0, -1.0)]
     x = np.unique(np.concatenate([positions, *near]))
-    return np.asarray(x[x <= end])
+    return x[x <= end]

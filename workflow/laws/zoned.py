@@ -102,7 +102,7 @@ class Zoned(Jkr):
 def _half_disc(x: Array, radius: float) -> Array:
     """Return ∫₀ˣ √(c² − x²) dx, (n,) [LU²], at positions 0 ≤ x ≤ c, (n,) [LU], for a `radius` c [LU]."""
     root = np.sqrt((radius - x) * (radius + x))
-    return np.asarray(0.5 * (x * root + radius**2 * np.arctan2(x, root)))
+    return 0.5 * (x * root + radius**2 * np.arctan2(x, root))
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,7 +51,7 @@ def largest_holding_force(law: DoubleExponential, spacing: float) -> float:
     """
     reach = math.ceil(REACH * law.longest_range / spacing) + 1
     row: Array = np.asarray(spacing * np.arange(-reach, reach + 1), dtype=np.float64)
-    heights: Array = np.asarray(law.longest_range * np.geomspace(1e-2, 10.0, 400))
+    heights: Array = law.longest_range * np.geomspace(1e-2, 10.0, 400)
     _, upward = _row_forces(law, 0.5 * spacing - row, heights)
     carried = np.flatnonzero(upward >= 0.0)
     height = float(heights[carried[-1]] if carried.size else heights[0])

@@ -162,7 +162,7 @@ class Hyperboloid(Flanked):
         """Return the height g = s x arctan(x/(R s)) [LU] after the MDR transform at positions x [LU]; same shape."""
         import numpy as np
 
-        return np.asarray(self.rise * x * np.arctan(x / (self.tip_radius * self.rise)))
+        return self.rise * x * np.arctan(x / (self.tip_radius * self.rise))
 
     @property
     def curvature_radius(self) -> float:

@@ -205,7 +205,7 @@ class Rough(Points):
         low, high = around.min(axis=1), around.max(axis=1)
         least = LEAST_JUMP * np.abs(slope).max() / x[-1]
         rough = (np.abs(around).max(axis=1) > least) & ((low <= 0.0) | (high > self.uneven * low))
-        return np.asarray(np.convolve(rough, np.ones(5), mode="same") > 0.0)  # two cells on either side
+        return np.convolve(rough, np.ones(5), mode="same") > 0.0  # two cells on either side
 
 
 @lru_cache(maxsize=8)

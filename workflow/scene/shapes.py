@@ -226,7 +226,7 @@ class Circle(Shape):
 
         last = 1.0 - 1e-12  # share of the radius up to which g is finite
         share = np.clip(x / self.radius, -last, last)
-        return np.asarray(x * np.arctanh(share))
+        return x * np.arctanh(share)
 
     @property
     def reach(self) -> float:
