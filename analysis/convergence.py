@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Numbers = Array | float
-TINY = float(np.finfo(np.float64).tiny)
+TINY = sys.float_info.min
 SLOWEST = 0.9
 """Largest ratio of the second difference to the first at which three spacings count as converging."""
 

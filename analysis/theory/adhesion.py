@@ -16,11 +16,10 @@ compression over h_0 for the rigid sphere, the load that attraction adds over F 
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import lru_cache
-
-import numpy as np
 
 from contact1d.analysis.theory.indenters import Contact, PowerLaw, require_positive
 from contact1d.digits import apart
@@ -239,7 +238,7 @@ def _ring_width(transition: float, a: float) -> float:
     if a == 0.0:
         return widest
     high = widest * (1.0 + 1e-9)  # above the root by more than round-off
-    least = 4.0 * np.finfo(np.float64).eps  # relative tolerance that brentq accepts
+    least = 4.0 * sys.float_info.epsilon  # relative tolerance that brentq accepts
     return float(brentq(lambda u: _adhesion_excess(transition, a, u), 0.0, high, xtol=1e-300, rtol=least))
 
 

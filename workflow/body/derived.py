@@ -32,6 +32,7 @@ from contact1d.workflow.body.traction import BodyPressure, body_pressures, is_of
 from contact1d.workflow.continuation.outcome import MODEL, Made, Outcome, Result, in_squares
 from contact1d.workflow.continuation.reduction import PRESSURE
 from contact1d.workflow.laws import law_of
+from contact1d.workflow.laws.numerics import value_at
 from contact1d.workflow.laws.pairs import row_force
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -244,7 +245,7 @@ def _pressure_size(scene: Scene, results: Mapping[str, Quantity]) -> dict[str, Q
     radius = first_of(results, *RADII)
     if radius is None or not radius.value > 0.0 or scene.bodies.profile.is_plane:
         return {}
-    height = float(scene.bodies.height(np.asarray([radius.value]))[0])
+    height = value_at(scene.bodies.height, radius.value)
     if scene.bodies.profile.has_edge:
         depth = first_of(results, "displacement", "peak_displacement")
         height += max(scene.experiment.places(), default=height) if depth is None else depth.value

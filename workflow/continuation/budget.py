@@ -29,6 +29,7 @@ from contact1d.workflow.continuation.outcome import LATTICE, Result, in_squares
 from contact1d.workflow.continuation.reduction import MARGIN, SIGNS, Reader, Reduction, Values, values_of
 from contact1d.workflow.continuation.state import State
 from contact1d.workflow.continuation.trace import Trace
+from contact1d.workflow.laws.numerics import value_at
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.scene import Scene
@@ -276,7 +277,7 @@ def misread(trace: Trace) -> list[Trace]:
     In the second, the first state has the plus sign. Results change with radii to first order: smaller radii change
     them by as much.
     """
-    alternating = np.asarray((-1.0) ** np.arange(len(trace)), dtype=np.float64)
+    alternating = np.asarray((-1.0) ** np.arange(len(trace)))
     return [trace.perturbed(radius_shift=shift) for shift in (1.0, alternating)]
 
 
@@ -290,7 +291,7 @@ def _detachment_errors(case: Reduction, trace: Trace) -> Array:
     model, motion = case.model, case.settings.motion
     if not model.limits:
         return np.zeros(len(trace))
-    jump = float(model.held(np.asarray([model.apart + _short_step(model)]))[0])
+    jump = value_at(model.held, model.apart + _short_step(model))
     passed = trace.time - trace.time[trace.force != 0.0].max(initial=0.0)
     return np.asarray(0.5 * abs(jump) * motion.time_step / motion.plate_mass * np.maximum(passed, 0.0))
 

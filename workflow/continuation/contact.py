@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -259,7 +260,7 @@ class Contact:
         spacing, settings, states = self.scene.bodies.spacing, self.settings, list[State]()
         # The wall's force is a difference of distances from far below.
         depth = plane_depth(self.scene, settings)
-        round_off = float(np.finfo(np.float64).eps) * depth * settings.forces.plane_stiffness
+        round_off = sys.float_info.epsilon * depth * settings.forces.plane_stiffness
         for start in range(0, len(rows), self._at_once):
             batch = rows[start : start + self._at_once]
             profiles, end = self._profiles(len(rows), slice(start, start + len(batch)))

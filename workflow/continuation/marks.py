@@ -8,6 +8,7 @@ displacement at which the force jumps, since the contact is lost.
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable
 from functools import lru_cache
 
@@ -24,7 +25,7 @@ LAST = 1e-6
 """Distance from the limit point, over the path from F = 0 to there, within which the last load step represents it."""
 MODEL_DIGITS = 1e-6
 """Relative error of the tables of the reduced model."""
-TINY = float(np.finfo(np.float64).tiny)
+TINY = sys.float_info.min
 POSITION_FACTOR = 2.0
 """Error of the position of the force maximum over the distance between those of two polynomials."""
 _top, _crossed = lru_cache(maxsize=4)(largest_tension), lru_cache(maxsize=4)(smooth_crossing)

@@ -14,6 +14,7 @@ import numpy as np
 from contact1d.workflow.continuation.state import radius_rule
 from contact1d.workflow.continuation.trace import Trace, of_model
 from contact1d.workflow.deck.steps import last_steps
+from contact1d.workflow.laws.numerics import value_at
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Array, History, Path
 from contact1d.workflow.model.free import impact, swing
@@ -243,7 +244,7 @@ class ModelBranch:
 
     def held(self, state: int) -> float:
         """Return F [FU], compression positive, of a state by its number, as in unloading from the deepest one."""
-        return float(self.model.held(self.path.displacement[[state]])[0])
+        return value_at(self.model.held, self.path.displacement[state])
 
     @property
     def path(self) -> Path:

@@ -187,7 +187,7 @@ class ThermalPullOff(PullOffExperiment):
 
 def _unloadings(trace: Trace) -> list[Trace]:
     """Return the legs of unloading and separation as traces, one for each cycle in order; [] without unloading."""
-    return [leg for leg in trace.phases("unloading", "pulling", "separating", "critical").legs if len(leg)]
+    return trace.phases("unloading", "pulling", "separating", "critical").legs
 
 
 def _marks(falling: Trace, scene: Scene, settings: Settings, preload: float) -> dict[str, Reading]:

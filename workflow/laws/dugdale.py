@@ -14,6 +14,7 @@ Source: D. Maugis, J. Colloid Interface Sci. 150 (1992) 243, for a paraboloid; t
 from __future__ import annotations
 
 import math
+import sys
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -22,13 +23,14 @@ import numpy as np
 
 from contact1d.analysis.polynomial import gauss
 from contact1d.workflow.errors import SettingsError
+from contact1d.workflow.laws.numerics import value_at
 from contact1d.workflow.laws.shape import Array, Profile, beside_kinks
 
 DOUBLINGS = 200
 """Most doublings of a bracket, and most iterations of a root finder in it."""
 INSIDE = 1.0 - 1e-6
 """Share of a body's half-width up to which an attraction may act: the transform of a circle is unbounded at its end."""
-TINY = float(np.finfo(np.float64).tiny)
+TINY = sys.float_info.min
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ class Dugdale:
         """
         if self.end == math.inf:
             return math.inf
-        edge = float(self.edges(np.asarray([self.end]))[0])
+        edge = value_at(self.edges, self.end)
         if math.isnan(edge):
             raise covered(self.end)
         return INSIDE * edge

@@ -85,9 +85,8 @@ def without_stops(path: Sequence[Stop]) -> list[Stop]:
 
 def elements_of(scene: Scene, x: Array) -> JenkinsElements:
     """Return the Jenkins elements of a scene with [friction], at positions x, (n,) [LU], relative to the apex."""
-    heights = np.asarray(scene.bodies.height(x), dtype=np.float64)
     stiffnesses = scene.bulk_stiffness, scene.tangential_stiffness
-    return JenkinsElements(heights, *stiffnesses, scene.the(Friction).coefficient)
+    return JenkinsElements(scene.bodies.height(x), *stiffnesses, scene.the(Friction).coefficient)
 
 
 def stops(experiment: Tangential, elements: JenkinsElements) -> list[Stop]:
@@ -157,7 +156,7 @@ class SlidingSprings(Springs):
     @property
     def chain(self) -> JenkinsElements:
         """Jenkins elements of these particles."""
-        heights = np.asarray(self.shape.height(np.abs(self.x)), dtype=np.float64)
+        heights = self.shape.height(np.abs(self.x))
         normal = self.law.stiffness
         return JenkinsElements(heights, normal, self.law.ratio * normal, self.law.coefficient)
 

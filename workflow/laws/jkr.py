@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.law import FARTHEST_RATIO, SOFTEST_SHARE, Law, stopped_at
-from contact1d.workflow.laws.numerics import NARROWEST, ROUND_OFF
+from contact1d.workflow.laws.numerics import NARROWEST, ROUND_OFF, value_at
 from contact1d.workflow.laws.pairs import springs
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Array, Followed, Path
@@ -161,7 +161,7 @@ class Jkr(Law):
             known *= 2.0
         adhesive = cls.from_jkr(law, scene, wanted, load)
         if scene.bodies.own_count is None:
-            widest = float(adhesive.radii(np.asarray([max(wanted, adhesive.displacement_at(load))]))[0])
+            widest = value_at(adhesive.radii, max(wanted, adhesive.displacement_at(load)))
             if widest > covered * profile.reach:
                 raise SettingsError(
                     f"the adhesive contact would cover the body, which ends at {profile.reach:.6g} LU: JKR's theory is "
@@ -485,7 +485,7 @@ class JkrCells(Particles):
 
         def energy(displacement: float) -> float:
             """Return U [FU·LU] of bodies in contact at a displacement [LU], with the contact radius in equilibrium."""
-            return self.law.energy(displacement, float(self.law.radii(np.asarray([displacement]))[0]))
+            return self.law.energy(displacement, value_at(self.law.radii, displacement))
 
         made, lost = (np.count_nonzero(np.diff(held.astype(int), prepend=0) == change) for change in (1, -1))
         end = energy(float(path.displacement[-1])) if held[-1] else 0.0

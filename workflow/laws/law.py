@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact1d.analysis.curve_marks import tops
+from contact1d.workflow.laws.numerics import value_at
 from contact1d.workflow.laws.radius import Compressed, InTension, RadiusRule, ToTheEdge
 from contact1d.workflow.laws.shape import Array, Profile, Tabulated
 from contact1d.workflow.scene import Impact, Scene
@@ -241,7 +242,7 @@ class Law(ABC):
 
         Where loading and unloading differ it is that in unloading; 0 of separated bodies.
         """
-        return float(self.contact_forces(np.asarray([displacement]))[0])
+        return value_at(self.contact_forces, displacement)
 
     def contact_forces(self, displacements: Array) -> Array:
         """Return F(d), (m,) [FU], of the whole body at displacements (m,) [LU], both positive in compression.
@@ -500,7 +501,7 @@ class Law(ABC):
         """Displacement [LU] at which each particle of a finite body coincides with its opposite one, the outermost pair
         at last.
         """
-        return self.rest - float(self.gap[0]) + float(self.profile.height(np.asarray([self.profile.reach]))[0])
+        return self.rest - float(self.gap[0]) + value_at(self.profile.height, self.profile.reach)
 
     @cached_property
     def _largest_tension(self) -> tuple[float, float]:

@@ -20,7 +20,7 @@ from contact1d.digits import apart
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import DOUBLINGS, Dugdale, Zone, covered
 from contact1d.workflow.laws.jkr import POINTS, Jkr
-from contact1d.workflow.laws.numerics import ROUND_OFF
+from contact1d.workflow.laws.numerics import ROUND_OFF, value_at
 from contact1d.workflow.laws.path import Array, Path, legs
 from contact1d.workflow.laws.radius import WithRange
 from contact1d.workflow.laws.shape import Profile, Splined, beside_kinks
@@ -359,8 +359,8 @@ class Maugis(Zoned):
         It is relative to separated bodies, and 0 below the displacement at which the contact is lost. For a = 0 the
         bodies attract each other without contact.
         """
-        width = (float(self.profile.height(np.asarray([radius]))[0]) - displacement) / self.equations.ratio
-        c = math.hypot(radius, width) if radius > 0.0 else float(self.reaches(np.asarray([displacement]))[0])
+        width = (value_at(self.profile.height, radius) - displacement) / self.equations.ratio
+        c = math.hypot(radius, width) if radius > 0.0 else value_at(self.reaches, displacement)
         return 0.0 if displacement < self.held.displacement[0] else self.energy_of(radius, c, displacement)
 
     def energy_of(self, a: float, c: float, d: float) -> float:

@@ -22,7 +22,7 @@ from typing import ClassVar
 import numpy as np
 
 from contact1d.workflow.laws.law import Law
-from contact1d.workflow.laws.numerics import ROUND_OFF
+from contact1d.workflow.laws.numerics import ROUND_OFF, value_at
 from contact1d.workflow.laws.path import Array, Followed, History, Path, equilibria
 from contact1d.workflow.laws.shape import Profile as Undeformed
 from contact1d.workflow.laws.shape import positions_within
@@ -188,7 +188,7 @@ class Particles(ABC):
             """Return F [FU], compression positive, at a displacement [LU]; the other arguments are not used."""
             nonlocal is_lost
             is_lost = displacement < self.apart or (is_lost and displacement < 0.0)
-            return 0.0 if is_lost else float(self.held(np.asarray([displacement]))[0])
+            return 0.0 if is_lost else value_at(self.held, displacement)
 
         return force
 

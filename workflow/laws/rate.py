@@ -13,7 +13,7 @@ import numpy as np
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.dugdale import Dugdale, Zone
 from contact1d.workflow.laws.jkr import Jkr
-from contact1d.workflow.laws.numerics import ROUND_OFF
+from contact1d.workflow.laws.numerics import ROUND_OFF, value_at
 from contact1d.workflow.laws.path import Array, History, Path
 from contact1d.workflow.laws.zoned import Zoned, ZonedCells
 from contact1d.workflow.scene import Adhesion, Rate, Scene
@@ -95,7 +95,7 @@ class Receding(Zoned):
 
         0 where the energy release rate is at most the work of adhesion, or where the edge is pressed, d ≥ g(a).
         """
-        opened = float(self.profile.height(np.asarray([edge]))[0]) - displacement
+        opened = value_at(self.profile.height, edge) - displacement
         excess = self.modulus * opened * opened / (2.0 * math.pi * edge * self.work) - 1.0
         return -self.rate.velocity * excess ** (1.0 / self.rate.exponent) if excess > 0.0 and opened > 0.0 else 0.0
 
@@ -162,7 +162,7 @@ class Receding(Zoned):
             velocity: of the pull [LU/TU], > 0.
             count: number of times of each kind, both ends included.
         """
-        edge, least = float(self.radii(np.asarray([start]))[0]), self.fixed_grips[1]
+        edge, least = value_at(self.radii, start), self.fixed_grips[1]
         end = (start - least) / velocity
         while True:
             times = np.linspace(0.0, end, 4000)

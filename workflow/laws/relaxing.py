@@ -296,7 +296,7 @@ class RelaxingSprings(Particles):
         particles.
         """
         x = np.linspace(0.0, float(np.abs(self.x).max()), 20 * self.x.size)
-        return np.asarray(self.law.profile.height(x), dtype=np.float64), x
+        return self.law.profile.height(x), x
 
     def _positions(self, heights: Array) -> Array:
         """Return the positions ≥ 0, (m,) [LU], of heights on the body, (m,) [LU]: linear, and one secant step.

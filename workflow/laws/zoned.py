@@ -5,6 +5,7 @@ The integrals add up, so that F is exact at every spacing.
 
 from __future__ import annotations
 
+import sys
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -94,9 +95,7 @@ class Zoned(Jkr):
         area = np.where(cells.outer < a, cells.above, self.equations.area(np.asarray([a]))[0])
         pressed = self.modulus * np.where(cells.inner < a, d * (end - cells.inner) - (area - cells.below), 0.0)
         low, high = (np.minimum(np.maximum(end, a), c) for end in (cells.inner, cells.outer))
-        return np.asarray(
-            cells.sides * (pressed - 2.0 * self.equations.stress * (_half_disc(high, c) - _half_disc(low, c)))
-        )
+        return cells.sides * (pressed - 2.0 * self.equations.stress * (_half_disc(high, c) - _half_disc(low, c)))
 
 
 def _half_disc(x: Array, radius: float) -> Array:
@@ -144,7 +143,7 @@ class ZonedCells(Particles):
         ends = (reach == edge) & (edge > 0.0)
         jump = np.where(ends, law.modulus * (d - law.profile.height(edge)), 0.0)
         # The part of a cell in the ring of attraction is a difference of the discs up to its ends.
-        round_off = float(np.finfo(np.float64).eps) * 2.0 * equations.stress * reach**2
+        round_off = sys.float_info.epsilon * 2.0 * equations.stress * reach**2
         return Followed(
             self.x, zone.force, lambda state: law.loads(cells, zone, state), zone=(edge, reach, jump),
             round_off=round_off,

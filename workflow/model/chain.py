@@ -15,7 +15,7 @@ import numpy as np
 from contact1d.digits import apart, digits_apart
 from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.laws.law import FARTHEST_RATIO, Law
-from contact1d.workflow.laws.numerics import ROUND_OFF
+from contact1d.workflow.laws.numerics import ROUND_OFF, value_at
 from contact1d.workflow.model.dynamics import DriveLeg
 from contact1d.workflow.scene import Bodies, Scene, Tangential
 
@@ -70,7 +70,7 @@ def require_body(bodies: Bodies, largest: float, particles: int) -> None:
         )
     if bodies.reach < math.inf:
         longest = 0.5 * (max(particles, _most_particles(bodies)) - 1) * bodies.own_spacing
-        deepest = float(bodies.height(np.asarray([longest]))[0])
+        deepest = value_at(bodies.height, longest)
         if largest >= deepest:
             needed, possible = apart(largest, deepest, 4)
             raise SettingsError(
@@ -229,7 +229,7 @@ def require_apex(scene: Scene, particles: int, cutoff: float) -> None:
         SettingsError: names the particles' height [LU].
     """
     nearest = 0.5 * scene.bodies.own_spacing if particles % 2 == 0 else 0.0
-    height = float(scene.bodies.height(np.asarray([nearest]))[0])
+    height = value_at(scene.bodies.height, nearest)
     # Not even neighbour springs bring a particle so far.
     if height > 1e3 * max(cutoff, scene.bodies.spacing):
         raise SettingsError(
@@ -300,7 +300,7 @@ def require_digits(scene: Scene, particles: int, deepest: float, force: float) -
     """
     if scene.method != "quasistatic" or not scene.interaction:
         return
-    last = float(scene.bodies.height(np.asarray([0.5 * (particles - 1) * scene.bodies.own_spacing]))[0])
+    last = value_at(scene.bodies.height, 0.5 * (particles - 1) * scene.bodies.own_spacing)
     digit = 0.5 * float(np.spacing(abs(last) + abs(deepest)))
     round_off, allowed = scene.bulk_stiffness * digit, 0.1 * force  # a tenth, as the residual of a converged state
     if round_off > allowed:

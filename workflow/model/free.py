@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from contact1d.workflow.laws.numerics import value_at
 from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Array, Path
 from contact1d.workflow.model.motion import inertia
@@ -41,7 +42,7 @@ def swing(scene: Scene, settings: Settings, model: Particles, start: float, load
     particle, plate = inertia(scene, settings)
     mass, drag, step = plate + settings.chains.upper * particle, settings.drag(), settings.motion.time_step
     path, displacement, velocity, contact_force = np.empty(total), start, 0.0, model.force_in_time()
-    force = load - float(model.held(np.asarray([displacement]))[0])
+    force = load - value_at(model.held, displacement)
     for i in range(total):
         velocity += 0.5 * step * force / mass
         displacement += step * velocity
