@@ -10,9 +10,9 @@ from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
+from tests.scenes import ROOT
 from validation.page import write_between
 
-ROOT = Path(__file__).parents[1]
 NUMBER = re.compile(r"\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 

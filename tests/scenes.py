@@ -1,8 +1,14 @@
-"""The tables of small scenes, for tests that say only what is their own."""
+"""The tables of small scenes, for tests that say only what is their own; folders, and what a JSON file says."""
 
+import json
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
+ROOT = Path(__file__).parents[1]
+"""The folder of the project."""
+SCENES = ROOT / "lammps_inputs" / "scenes"
+"""The folder of the scenes that come with it."""
 LAW = (0.18, 0.13, 0.09, 0.26)
 """A [FU·LU], a [LU], B [FU·LU], b [LU] of V(r) = A exp(−r/a) − B exp(−r/b)."""
 STEEL_ON_GLASS = """
@@ -50,3 +56,8 @@ def in_si(profile: dict[str, Any], modulus: str = "1 MPa", **tables: Any) -> dic
 
 PLANE = chains(50.0, 0.5, title="plane", interaction=None, bodies={"particles": 21, "lower": "rigid_plane"})
 """Some particles on a rigid plane, for an experiment: the quickest scene there is."""
+
+
+def read_json(path: Path) -> dict[str, Any]:
+    """What a JSON file says."""
+    return dict(json.loads(path.read_text(encoding="utf-8")))

@@ -6,15 +6,15 @@ What a fragment adds is in `lammps_inputs/fragments`; its header names what it n
 import re
 from collections import Counter
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from tests.decks.test_run_folder import PAIR, SCENES, STICKY, STUCK
 from tests.decks.written import Written, written
+from tests.scenes import ROOT
 
-ROOT = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
+FRAGMENTS = ROOT / "lammps_inputs" / "fragments"
 PATH = {"kind": "path", "displacements": [0.0, 0.05]}
 DRAG, GUIDE = "variable        damping_coefficient index …", "variable        guide_x index …"
 NUMBER = re.compile(r"(?<= )-?\d\S*")
@@ -22,22 +22,22 @@ NUMBER = re.compile(r"(?<= )-?\d\S*")
 
 def lines(name: str) -> list[str]:
     """Commands of a fragment."""
-    return [line for line in (ROOT / f"{name}.lmp").read_text(encoding="utf-8").splitlines() if line[0] != "#"]
+    return [line for line in (FRAGMENTS / f"{name}.lmp").read_text(encoding="utf-8").splitlines() if line[0] != "#"]
 
 
 def header(name: str, *keys: str) -> set[str]:
     """Names in lines of a fragment's header, explanations in brackets left out."""
-    text = (ROOT / f"{name}.lmp").read_text(encoding="utf-8")
+    text = (FRAGMENTS / f"{name}.lmp").read_text(encoding="utf-8")
     found = [re.findall(rf"^# {key}: (.*)$", text, re.MULTILINE)[0] for key in keys]
     return {word for line in found for word in re.sub(r"\(.*?\)", "", line).split()} - {"-"}
 
 
 @pytest.mark.parametrize(
-    "name", sorted(path.relative_to(ROOT).with_suffix("").as_posix() for path in ROOT.rglob("*.lmp"))
+    "name", sorted(path.relative_to(FRAGMENTS).with_suffix("").as_posix() for path in FRAGMENTS.rglob("*.lmp"))
 )
 def test_a_fragments_header_agrees_with_its_text(name: str) -> None:
     """Four lines at the top; what it needs is used and not defined in it, and what it defines its commands define."""
-    text = (ROOT / f"{name}.lmp").read_text(encoding="utf-8")
+    text = (FRAGMENTS / f"{name}.lmp").read_text(encoding="utf-8")
     assert re.match("# Purpose: .+\n# Formula: .+\n# Needs: .+\n# Defines: .+\n", text)
     assert text.isascii()  # LAMMPS warns of anything else
     commands = "\n".join(lines(name)).replace("&\n", " ")

@@ -12,8 +12,8 @@ from pathlib import Path
 import pytest
 
 from tests.decks.written import written
+from tests.scenes import ROOT
 
-ROOT = Path(__file__).parents[2]
 GOLDEN = Path(__file__).parent / "golden"
 SCENES = sorted(path.stem for path in (ROOT / "lammps_inputs" / "scenes").glob("*.toml"))
 NUMBER = re.compile(r"-?\d+\.\d+(?:e[+-]?\d+)?|-?\d+e[+-]?\d+")

@@ -3,10 +3,8 @@
 The law of a pair and its sum over a straight row are written out; their minima, roots and ranges are scipy's.
 """
 
-import json
 import math
 import re
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,9 +14,9 @@ from scipy.optimize import brentq, minimize_scalar
 from contact1d import SettingsError, run
 from contact1d.potentials import DoubleExponential, Exponential
 from tests.decks.written import ANCHORS, FAR, LOWER, UPPER, Written, written
-from tests.scenes import LAW, chains
+from tests.scenes import LAW, ROOT, chains, read_json
 
-STUDIED = json.loads((Path(__file__).parents[2] / "workflow/model/calibration.json").read_text(encoding="utf-8"))
+STUDIED = read_json(ROOT / "workflow/model/calibration.json")
 SHARES = {name: entry["value"] for name, entry in STUDIED["values"].items()}
 RADIUS, SPRING, SPACING, TOLERANCE = 100.0, 0.7, 0.8, 1e-3
 LOAD = {"kind": "load", "force": 0.4}

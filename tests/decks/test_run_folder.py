@@ -3,7 +3,6 @@
 With `[output] states` it has a frame for each row of the curve, or some of them, by the deck's own dump.
 """
 
-import json
 import pickle
 import re
 import shutil
@@ -23,11 +22,10 @@ from contact1d.__main__ import app
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import read_states
 from tests.decks.written import lmp
-from tests.scenes import chains
+from tests.scenes import ROOT, chains, read_json
 
 Array = NDArray[np.float64]
 
-ROOT = Path(__file__).parents[2]
 READ = ("in.lammps", "system.data", "interaction.table", "neighbours.moves", "adhesion.cells")
 """What a deck may read; everything else in a folder is a result."""
 HARMLESS = (
@@ -131,7 +129,7 @@ def test_lmp_repeats_the_run_bitwise(make: Make, case: tuple[str, Any], tmp_path
     assert not [name for name in names if name.endswith(".part") or name.startswith("saved")]
     assert {"in.lammps", "system.data", "curve.txt", "states.lammpstrj", "curve.csv", "results.json"} <= names
     assert ("interaction.table" in names) == ("interaction" in SCENES[case[0]])
-    assert json.loads((folder / "results.json").read_text()) == make(case).document
+    assert read_json(folder / "results.json") == make(case).document
 
 
 def test_the_stiffness_of_neighbours_is_told_once(tmp_path: Path) -> None:

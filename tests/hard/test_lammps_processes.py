@@ -3,7 +3,6 @@
 A user gets the cause in words and a folder without numbers; nothing that was started stays behind.
 """
 
-import json
 import multiprocessing
 import os
 import re
@@ -20,10 +19,9 @@ import numpy as np
 import pytest
 
 from contact1d import Contact1dError, RunError, load_run, read_scene, run
-from tests.scenes import PLANE, chains
+from tests.scenes import PLANE, ROOT, chains, read_json
 from tests.slurm import slurm
 
-ROOT = Path(__file__).parents[2]
 TIMED: dict[str, Any] = {"damping": {"coefficient": "auto"}, "plate": {}}
 LONG = chains(
     100.0, bodies={"particles": 4000}, accuracy={"tolerance": 1e-6}, **TIMED,
@@ -82,7 +80,7 @@ def disturbed(folder: Path, act: Callable[[list[int]], object], ranks: int = 1, 
     thread.join()
     assert len(seen) == ranks
     wait_for_the_end_of(seen)
-    document = json.loads((folder / "results.json").read_text())
+    document = read_json(folder / "results.json")
     assert document["status"] == "failed"
     assert document["error"]["message"] in str(caught.value)
     assert "force" not in document

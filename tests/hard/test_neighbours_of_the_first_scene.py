@@ -15,8 +15,9 @@ from typing import Any
 import pytest
 
 from contact1d import Contact1dError, read_scene, run
+from tests.scenes import SCENES
 
-SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
+SCENE = SCENES / "pull_off.toml"
 KEYS = (
     "bodies.particles", "bodies.spacing", "bodies.profile.radius", "bodies.bulk_stiffness",
     "interaction.repulsion.amplitude", "interaction.repulsion.range",

@@ -7,10 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import SettingsError, read_scene, run, write_deck
-from tests.scenes import LAW, chains
+from tests.scenes import LAW, SCENES, chains
 from validation.references.interaction import PairInteraction
 
-SHIPPED = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 CLAIMED = 1e-3
 """Of a displacement, the scenes' own tolerance."""
 
@@ -36,7 +35,7 @@ def test_a_shipped_scene_with_such_a_number_is_refused_at_once(
     shipped: str, change: str, words: str, tmp_path: Path
 ) -> None:
     with pytest.raises(SettingsError, match=words):
-        write_deck(read_scene(SHIPPED / f"{shipped}.toml", [change]), tmp_path / "run")
+        write_deck(read_scene(SCENES / f"{shipped}.toml", [change]), tmp_path / "run")
 
 
 def test_a_single_pair_under_a_steep_body_is_the_closed_forms() -> None:

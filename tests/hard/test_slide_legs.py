@@ -1,17 +1,15 @@
 """Claim: hard slides are the motion of `validation.references.slide`: there and back with a rest, too fast, on a stiff
 cantilever, with particles that slip one by one."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from contact1d import read_scene, run
 from contact1d.workflow.model.settings import settings_for
+from tests.scenes import SCENES
 from validation.row import tables_beside
 from validation.slides import integrated, mean_friction
 
-SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 TRACE = 1e-3
 """Of the peak: legs other than the first have timesteps of their own, and the inertia of the first one's drag."""
 CLOSED = 5e-3

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from contact1d import RunError, Scene, SceneError, SettingsError, read_scene, run, write_deck
+from tests.scenes import SCENES
 
-SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 MIRRORED = 1e-9
 """Round-off [LU, FU], as a motion with drag leaves it."""
 

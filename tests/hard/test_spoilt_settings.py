@@ -1,6 +1,5 @@
 """Claim: settings that no scene can ask for, as a fault of the program would choose them, give no number unnoticed."""
 
-import json
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +10,7 @@ import pytest
 from contact1d import RunError, Scene, run
 from contact1d.workflow.model.settings import Settings
 from contact1d.workflow.runs import campaign
-from tests.scenes import chains
+from tests.scenes import chains, read_json
 
 TIMED = chains(
     100.0, bodies={"particles": 60}, plate={}, damping={"coefficient": "auto"},
@@ -37,7 +36,7 @@ def spoil(monkeypatch: pytest.MonkeyPatch, record: str, **numbers: float) -> Non
 def failure(scene: dict[str, Any], folder: Path) -> str:
     with pytest.raises(RunError) as caught:
         run(scene, folder, figures=False)
-    assert json.loads((folder / "results.json").read_text())["status"] == "failed"
+    assert read_json(folder / "results.json")["status"] == "failed"
     return str(caught.value)
 
 

@@ -1,13 +1,12 @@
 """Hard cases: what can't be trusted is not reported. Each run ends in words, with status "failed" and no number."""
 
-import json
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from contact1d import RunError, run
-from tests.scenes import LAW, chains
+from tests.scenes import LAW, chains, read_json
 from validation.references.interaction import PairInteraction
 from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
@@ -46,7 +45,7 @@ def test_no_number_comes_out_not_even_of_the_run_before(name: str, tmp_path: Pat
         assert (folder / "profile.csv").is_file()
     with pytest.raises(RunError, match=words):
         run(scene, folder, figures=False)
-    document = json.loads((folder / "results.json").read_text())
+    document = read_json(folder / "results.json")
     assert document["status"] == "failed"
     assert words in document["error"]["message"]
     assert not any(isinstance(entry, dict) and "value" in entry for entry in document.values())

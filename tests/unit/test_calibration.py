@@ -1,8 +1,6 @@
 """What settings use up of a tolerance is what the kept study says, and nothing else."""
 
-import json
-from pathlib import Path
-
+from tests.scenes import ROOT, read_json
 from validation.tools.calibration import (
     LADDERS,
     SCENES,
@@ -12,12 +10,12 @@ from validation.tools.calibration import (
     read_rows,
 )
 
-FILE = Path(__file__).parents[2] / "workflow" / "model" / "calibration.json"
+FILE = ROOT / "workflow" / "model" / "calibration.json"
 
 
 def test_the_file_in_use_follows_from_a_study_of_every_share_at_every_tolerance() -> None:
     """Renew both with `python -m validation.tools.calibration`; never by hand."""
-    rows, kept = read_rows(), json.loads(FILE.read_text(encoding="utf-8"))
+    rows, kept = read_rows(), read_json(FILE)
     assert kept == chosen_values(rows)
     assert kept["values"].keys() == LADDERS.keys()
     assert {row.scene for row in rows} == set(SCENES)

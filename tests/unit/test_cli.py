@@ -17,8 +17,8 @@ from typer.testing import CliRunner
 
 from contact1d.__main__ import app
 from tests.command import contact1d
+from tests.scenes import ROOT, read_json
 
-ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
 PROGRAM = [sys.executable, "-m", "contact1d"]
 SCENE = """
@@ -76,7 +76,7 @@ def test_run_prints_numbers_in_si_closed_forms_and_a_picture() -> None:
     assert "loading" in done.stderr  # plain progress lines where there is no terminal
     folder = Path("runs/plane")
     assert {path.suffix for path in folder.glob("pressure*.*")} == {".svg", ".csv"}
-    document = json.loads((folder / "results.json").read_text())
+    document = read_json(folder / "results.json")
     assert (document["scene"]["experiment"]["force"], document["effects"]) == (4.0, [])
 
 
@@ -275,7 +275,7 @@ def test_a_run_without_adhesion_or_without_its_scene_is_no_material() -> None:
     assert done.exit_code == 2
     assert "no adhesion_force and no zero_load_radius" in done.stderr
     results = Path("run/results.json")
-    document = json.loads(results.read_text(encoding="utf-8"))
+    document = read_json(results)
     results.write_text(json.dumps({key: entry for key, entry in document.items() if key != "scene"}))
     done = contact1d(*asked)
     assert (done.exit_code, done.stdout, done.stderr.count("\n")) == (2, "", 1)

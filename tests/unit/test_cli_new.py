@@ -11,6 +11,7 @@ import pytest
 
 from contact1d import read_scene
 from tests.command import contact1d
+from tests.scenes import read_json
 
 Schema = dict[str, Any]
 
@@ -49,7 +50,7 @@ def test_a_new_scene_runs_without_a_warning(kind: str, profile: str | None, tmp_
         assert (scene.material.upper.youngs_modulus, scene.material.lower.poisson_ratio) == (2e6, 0.35)
     done = contact1d("run", tmp_path / "my.toml", "--out", tmp_path / "run", "--no-figures", "-q")
     assert done.exit_code == 0, done.output
-    assert json.loads((tmp_path / "run" / "results.json").read_text(encoding="utf-8"))["warnings"] == []
+    assert read_json(tmp_path / "run" / "results.json")["warnings"] == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -107,4 +108,4 @@ def test_nothing_is_overwritten_and_no_folder_made(tmp_path: Path, monkeypatch: 
 def test_the_schema_is_written(tmp_path: Path) -> None:
     done = contact1d("schema", "--out", tmp_path / "scene.schema.json")
     assert "#:schema scene.schema.json" in done.stdout
-    assert json.loads((tmp_path / "scene.schema.json").read_text(encoding="utf-8")) == SCHEMA
+    assert read_json(tmp_path / "scene.schema.json") == SCHEMA

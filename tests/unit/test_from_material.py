@@ -17,7 +17,7 @@ from typer.testing import CliRunner
 from contact1d import Contact1dError, Run, from_material, run
 from contact1d.__main__ import app
 from tests.scenes import MODULUS as STEEL_ON_GLASS
-from tests.scenes import chains
+from tests.scenes import ROOT, chains
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 
 ROUND_OFF = 1e-12
@@ -85,7 +85,7 @@ def test_a_load_of_0_is_none_with_and_without_a_unit(tmp_path: Path) -> None:
 
 
 def test_the_page_has_every_key(tmp_path: Path) -> None:
-    page = (Path(__file__).parents[2] / "docs" / "identify.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs" / "identify.md").read_text(encoding="utf-8")
     table = page.split("## Keys")[1].split("## ")[0]
     named = {key for row in re.findall(r"^\| (`[^|]*) \|", table, re.MULTILINE) for key in re.findall(r"`(\w+)`", row)}
     assert named == set(refused(LOADED | {"xyz": 1}, tmp_path).partition("allowed here: ")[2].split(", "))

@@ -13,9 +13,10 @@ from typing import Any
 import pytest
 
 from contact1d import Run, RunError, Scene, load_run, run_many
+from tests.scenes import SCENES
 
 MakeScene = Callable[..., Scene]
-LONG = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off_dynamic.toml"
+LONG = SCENES / "pull_off_dynamic.toml"
 PATIENCE = 120.0
 
 

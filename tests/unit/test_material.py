@@ -1,6 +1,5 @@
 """[material]: elasticity by textbook formulae, the springs and units that follow, and results in SI."""
 
-import json
 import math
 from typing import Any
 
@@ -10,6 +9,7 @@ import pytest
 from contact1d import Run, read_scene, run
 from contact1d.workflow.units import Scales
 from tests.materials import E_STAR, JKR, PATH, RUBBER, STEEL, UNITS, tables
+from tests.scenes import read_json
 
 ROUND_OFF = 1e-13
 """Relative: a few operations each."""
@@ -70,7 +70,7 @@ def test_springs_and_units_of_the_material_make_its_layer(lower: str, reduction:
 
 def test_each_quantity_stands_in_si_beside_its_model_units(finished: dict[str, Run]) -> None:
     results = finished["plane"].document
-    assert json.loads((finished["plane"].folder / "results.json").read_text(encoding="utf-8")) == results
+    assert read_json(finished["plane"].folder / "results.json") == results
     for name, factor, unit in (("largest_force", 3e-6, "N"), ("largest_radius", 2e-9, "m")):
         entry = results[name]
         assert set(entry) == {"value", "uncertainty", "unit", "si"}

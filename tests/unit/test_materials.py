@@ -5,7 +5,6 @@ docs/materials.md is made from the table. Renew it with WRITE_DOCS=1 pytest test
 
 import os
 import tomllib
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,9 +13,8 @@ from typer.testing import CliRunner
 import contact1d
 from contact1d import Scene, SceneError, read_scene
 from contact1d.__main__ import app
-from tests.scenes import STEEL_ON_GLASS
+from tests.scenes import ROOT, STEEL_ON_GLASS
 
-ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "materials.md"
 MATERIALS = tomllib.loads((ROOT / "workflow" / "scene" / "materials.toml").read_text(encoding="utf-8"))
 HEAD = """# Named materials

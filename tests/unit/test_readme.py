@@ -3,7 +3,6 @@
 The first two commands, `make run` and `make test`, are what `.ci/run` does.
 """
 
-import json
 import re
 import shlex
 import tomllib
@@ -19,9 +18,9 @@ from contact1d import from_material, read_scene, sweep
 from contact1d.__main__ import app
 from contact1d.workflow.fit.plan import read_fit
 from tests.pages import require_shown
+from tests.scenes import ROOT, read_json
 from tests.sweeps import Lost
 
-ROOT = Path(__file__).parents[2]
 PAGES = {
     path: path.read_text(encoding="utf-8") for path in (ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md")))
 }
@@ -114,7 +113,7 @@ def test_readme_has_what_effects_cost_by_the_records_of_cost_studies() -> None:
         "| --- | --- | --- | --- |",
     ]
     for path in sorted((ROOT / "validation" / "results" / "costs").glob("*.json")):
-        record = json.loads(path.read_text(encoding="utf-8"))
+        record = read_json(path)
         tolerance = {"accuracy.tolerance": record["tolerance"]}
         own = next(row for row in record["rows"] if row["edit"]["values"] == tolerance)
         for row in record["rows"]:

@@ -11,10 +11,9 @@ from PIL import Image
 from contact1d import Run, RunError, run
 from tests.command import contact1d
 from tests.pages import figures_on
-from tests.scenes import chains
+from tests.scenes import SCENES, chains
 from tests.sweeps import PLANE
 
-SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 PULL_OFF = chains(400.0, experiment={"kind": "pull_off", "preload": 0.5}, title="<a> pull-off & more")
 MOVES = PLANE | {"experiment": {"kind": "path", "displacements": [0.0, 0.05, 0.1]}}

@@ -7,7 +7,6 @@ import json
 import os
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -16,9 +15,8 @@ from typer.testing import CliRunner
 from contact1d import Quantity, SceneError, read_scene
 from contact1d.__main__ import app
 from contact1d.workflow.units import SI
-from tests.scenes import STEEL_ON_GLASS
+from tests.scenes import ROOT, STEEL_ON_GLASS
 
-ROOT = Path(__file__).parents[2]
 COPY, PAGE = ROOT / "docs" / "scene.schema.json", ROOT / "docs" / "scene.md"
 PRINTED = CliRunner().invoke(app, ["schema"]).output
 SCHEMA = json.loads(PRINTED)

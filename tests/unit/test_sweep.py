@@ -16,10 +16,10 @@ import pytest
 from contact1d import Contact1dError, FolderError, SceneError, load_run, run, sweep
 from tests.command import contact1d
 from tests.pages import figures_on
-from tests.scenes import MODULUS
+from tests.scenes import MODULUS, SCENES, read_json
 from tests.sweeps import BROKEN, FORCE, PLANE, RADIUS, RADIUS_IN_WORDS, Here, Lost, Stated, axis, plane, rows
 
-SCENE = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "steel_on_glass.toml"
+SCENE = SCENES / "steel_on_glass.toml"
 TWO = plane(axis(FORCE, 0.5, 1.0))
 
 
@@ -114,7 +114,7 @@ def test_only_what_is_new_or_broken_runs_again(finished: Path, tmp_path: Path) -
     table, record = ((folder / name).read_text() for name in ("results.csv", "sweep.toml"))
     files = [folder / row["run"] / "results.json" for row in rows(folder)]
     for file, kind in zip(files, ("half", "NaN"), strict=True):
-        file.write_text(BROKEN[kind](json.loads(file.read_text())))
+        file.write_text(BROKEN[kind](read_json(file)))
     (folder / "sweep.toml").write_text(record[:60])
     sweep(TWO, folder, again := Here(), figures=False, progress=(progress := Mock()))
     assert again.given == [file.parent.name for file in files]
@@ -122,7 +122,7 @@ def test_only_what_is_new_or_broken_runs_again(finished: Path, tmp_path: Path) -
     assert first == f"{folder / 'sweep.toml'} is not the record of a sweep and is replaced"
     assert others == [f"{file.parent.name}: its results.json is invalid, so it is run again" for file in files]
     assert [(folder / name).read_text() for name in ("results.csv", "sweep.toml")] == [table, record]
-    document = json.loads(files[1].read_text())
+    document = read_json(files[1])
     files[1].write_text(json.dumps(document | {"force": document["force"] | {"value": None}}))
     sweep(plane(axis(FORCE, 0.5, 0.75, 1.0)), folder, more := Here(), figures=False)
     assert len(more.given) == 1

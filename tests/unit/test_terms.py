@@ -3,11 +3,11 @@
 import ast
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.scenes import ROOT
+
 TERMS = {
     r"let(s|ting)? go\b": "separates, pull-off, premature detachment",
     r"torn off": "snap-out, instability",

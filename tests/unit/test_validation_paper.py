@@ -13,6 +13,7 @@ import pytest
 from contact1d import Run, Scene, read_scene
 from contact1d.analysis.curve import Columns, profile_columns
 from contact1d.analysis.pressure import Profile
+from tests.scenes import SCENES
 from validation.paper import STUDIES, fig9, tangential
 from validation.paper.fig9 import asperity
 from validation.paper.scenes import barquins_reduced
@@ -23,7 +24,7 @@ from validation.study import Study
 LONG = ("neighbours", "fig5", "fig6", "exponents", "fig8a", "fig8b", "heat", "detachment", "fig9", "adhesive", "fig4")
 """Their references take more than a second."""
 EACH = [pytest.param(one, id=one.name, marks=[pytest.mark.slow] * (one.name in LONG)) for one in STUDIES]
-PAPER = read_scene(Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "paper.toml")
+PAPER = read_scene(SCENES / "paper.toml")
 ABOUT = tables_beside(__file__)
 WRONG = (1.4, 3.0)
 """Factors by which each number of each run is wrong, drawn from its name: the widest tolerance of a row is 10 %."""

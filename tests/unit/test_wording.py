@@ -8,9 +8,9 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
-from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+from tests.scenes import ROOT
+
 PRONOUNS = {
     "found", "one", "ones", "own", "at", "other", "others", "beside", "said", "it", "its", "them", "that", "there",
     "here", "such", "same", "so", "all", "both", "each", "what", "which", "way", "told",

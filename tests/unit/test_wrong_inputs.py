@@ -5,15 +5,14 @@ In a scene in SI and in one in units of the model.
 
 import pickle
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import pytest
 
 from contact1d import Scene, SceneError, read_scene, run
-from tests.scenes import STEEL_ON_GLASS, chains
+from tests.scenes import SCENES, STEEL_ON_GLASS, chains
 
-SHIPPED = (Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "pull_off.toml").read_text(encoding="utf-8")
+SHIPPED = (SCENES / "pull_off.toml").read_text(encoding="utf-8")
 R, F, H = "bodies.profile.radius", "experiment.force", "bodies.spacing"
 E = "material.upper.youngs_modulus"
 SLIDE = 'experiment={ kind = "slide", normal_force = "1 N", distance = "1 µm" }'

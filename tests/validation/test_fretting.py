@@ -17,7 +17,8 @@ from typer.testing import CliRunner
 from contact1d import run
 from contact1d.__main__ import app
 from contact1d.analysis.theory.mindlin import mindlin_cycle_energy
-from tests.pages import ROOT, require_shown
+from tests.pages import require_shown
+from tests.scenes import ROOT
 from validation.references.mindlin import mindlin_loop_area
 
 PAGE = ROOT / "docs" / "how_to" / "shear.md"

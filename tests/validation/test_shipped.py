@@ -5,7 +5,6 @@ integrator, an exact sum or a law.
 """
 
 import math
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,6 +12,7 @@ import pytest
 from scipy.optimize import brentq
 
 from contact1d import read_scene, run
+from tests.scenes import ROOT
 from validation.paper.fig9.curved import integrated
 from validation.paper.fig9.reading import SWEEPS, slides
 from validation.references.interaction import Exponential, PairInteraction
@@ -20,7 +20,7 @@ from validation.references.model import ChainModel
 from validation.references.pull_off import pull_off
 from validation.references.solver import ChainSolver, trace
 
-SHIPPED = Path(__file__).parents[2] / "lammps_inputs"
+SHIPPED = ROOT / "lammps_inputs"
 PULL_OFF = 1.483414
 """Of one contact, at rest and in time [FU]."""
 SCENES = {

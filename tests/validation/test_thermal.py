@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from contact1d import Run, load_run, read_scene, run
 from contact1d.analysis.curve_marks import largest_tension
-from tests.scenes import LAW
+from tests.scenes import LAW, SCENES
 from validation.paper import detachment
 from validation.references.detachment import detachment_in_time, drag_of_pairs
 from validation.references.interaction import PairInteraction
@@ -27,7 +27,6 @@ from validation.references.model import ChainModel
 from validation.references.thermal_chain import displacement_under
 
 Array = NDArray[np.float64]
-SCENES = Path(__file__).parents[2] / "lammps_inputs" / "scenes"
 SIGMAS = 4.0
 """Standard errors: one test in 16 000 would fail by chance, and the seeds are fixed."""
 BLOCKS = 20

@@ -20,7 +20,8 @@ from typer.testing import CliRunner
 
 from contact1d import Quantity, read_scene
 from contact1d.__main__ import app
-from tests.pages import ROOT, require_shown
+from tests.pages import require_shown
+from tests.scenes import ROOT
 
 FOLDER = "docs/tutorials"
 PAGES = ("hertz", "adhesion", "friction", "profile", "scan", "sweep", "particle_model", "fit", "polymer")

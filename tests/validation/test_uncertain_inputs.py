@@ -2,16 +2,15 @@
 
 import math
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 from contact1d import Quantity, Run, SceneError, load_run, read_scene, run, sphere
-from tests.scenes import in_si
+from tests.scenes import SCENES, in_si
 
-HERTZ = Path(__file__).parents[2] / "lammps_inputs" / "scenes" / "hertz_plane.toml"
+HERTZ = SCENES / "hertz_plane.toml"
 SHARES = {"bodies.profile.radius": 0.01, "material.contact_modulus": 0.03, "adhesion.work_of_adhesion": 0.02}
 EXPONENTS = {
     "adhesion_force": (1, 0, 1),

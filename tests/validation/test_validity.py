@@ -14,8 +14,8 @@ import matplotlib.pyplot as plt
 import pytest
 
 from contact1d import Run, run
-from tests.pages import ROOT, require_shown
-from tests.scenes import in_si
+from tests.pages import require_shown
+from tests.scenes import ROOT, in_si
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
 from validation.references.mdr import ReducedContact
 
