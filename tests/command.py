@@ -7,5 +7,5 @@ from typer.testing import CliRunner, Result
 from contact1d.__main__ import app
 
 
-def contact1d(*arguments: str | Path) -> Result:
+def contact1d(*arguments: str | float | Path) -> Result:
     return CliRunner().invoke(app, [*map(str, arguments)])

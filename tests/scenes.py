@@ -5,6 +5,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+import pytest
+
+from contact1d import SceneError, read_scene
+
 ROOT = Path(__file__).parents[1]
 """The folder of the project."""
 SCENES = ROOT / "lammps_inputs" / "scenes"
@@ -61,3 +65,10 @@ PLANE = chains(50.0, 0.5, title="plane", interaction=None, bodies={"particles": 
 def read_json(path: Path) -> dict[str, Any]:
     """What a JSON file says."""
     return dict(json.loads(path.read_text(encoding="utf-8")))
+
+
+def refused(*scene: Any, **folder: Path) -> SceneError:
+    """The error of a scene that can't be read, from what `read_scene` is given."""
+    with pytest.raises(SceneError) as caught:
+        read_scene(*scene, **folder)
+    return caught.value

@@ -15,12 +15,11 @@ import ase.io
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from typer.testing import CliRunner
 
 from contact1d import Run, load_run, run, write_deck
-from contact1d.__main__ import app
 from contact1d.analysis.atoms import atoms
 from contact1d.analysis.curve import read_states
+from tests.command import contact1d
 from tests.decks.written import lmp
 from tests.scenes import ROOT, chains, read_json
 
@@ -249,7 +248,7 @@ def test_deck_of_a_shipped_scene_runs_under_lmp(name: str, tmp_path: Path) -> No
     """`contact1d deck SCENE --out DIR`, then `lmp -in in.lammps` there: no error, every row measured and finite."""
     scene = ROOT / "lammps_inputs" / "scenes" / f"{name}.toml"
     small = [word for change in QUICK[name] for word in ("--set", change)]
-    written = CliRunner().invoke(app, ["deck", str(scene), "--out", str(tmp_path / "deck"), *small])
+    written = contact1d("deck", scene, "--out", tmp_path / "deck", *small)
     assert written.exit_code == 0, written.output
     lmp(tmp_path / "deck")
     phases, rows = curve(tmp_path / "deck")

@@ -8,11 +8,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
 import contact1d
 from contact1d import run
-from contact1d.__main__ import app
+from tests.command import contact1d as command
 from tests.scenes import chains
 
 pytestmark = pytest.mark.browser
@@ -32,8 +31,7 @@ PIXEL = 1.0
 
 def page_of(folder: Path) -> str:
     """The address of the page of all runs in a folder."""
-    runs = [str(path) for path in sorted(folder.iterdir())]
-    done = CliRunner().invoke(app, ["report", *runs, "--out", str(folder / "report.html")])
+    done = command("report", *sorted(folder.iterdir()), "--out", folder / "report.html")
     assert done.exit_code == 0, done.output
     return (folder / "report.html").as_uri()
 

@@ -4,9 +4,8 @@ import math
 from pathlib import Path
 
 import pytest
-from typer.testing import CliRunner
 
-from contact1d.__main__ import app
+from tests.command import contact1d
 from tests.scenes import SCENES, read_json
 
 CERTAIN = 0.1
@@ -22,7 +21,7 @@ EXACT = {
 def test_the_errors_of_jkr_are_those_against_its_closed_form(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every error is the true one within a tenth, or a bound of it; a wider spacing has a larger one."""
     monkeypatch.chdir(tmp_path)
-    done = CliRunner().invoke(app, ["cost", str(SCENES / "jkr.toml"), "--repeats", "1", "--workers", "1"])
+    done = contact1d("cost", SCENES / "jkr.toml", "--repeats", "1", "--workers", "1")
     assert done.exit_code == 0, done.stderr
     folder = tmp_path / "costs" / "jkr"
     assert {path.name for path in folder.iterdir()} == {"cost.json", "cost.png"}
@@ -54,8 +53,7 @@ def test_the_errors_of_jkr_are_those_against_its_closed_form(tmp_path: Path, mon
 def test_a_scene_without_a_reference_ends_with_the_reason(
     scene: str, change: str, code: int, words: str, tmp_path: Path
 ) -> None:
-    call = ["cost", str(SCENES / f"{scene}.toml"), "--out", str(tmp_path / "new"), "--set", change]
-    done = CliRunner().invoke(app, call)
+    done = contact1d("cost", SCENES / f"{scene}.toml", "--out", tmp_path / "new", "--set", change)
     assert (done.exit_code, done.stdout) == (code, "")
     assert words in done.stderr
     assert not list(tmp_path.glob("new/*"))

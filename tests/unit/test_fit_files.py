@@ -12,13 +12,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import fit
-from contact1d.__main__ import app
 from contact1d.workflow.fit.curve import ForceCurve
 from contact1d.workflow.fit.data import DataError, curves
 from contact1d.workflow.fit.plan import read_fit
+from tests.command import contact1d
 
 Array = np.ndarray[Any, np.dtype[np.float64]]
 HALF = 50
@@ -337,7 +336,7 @@ def test_a_command_with_the_file_of_another_one_names_that(
     path.parent.mkdir(exist_ok=True)
     path.write_text(content, encoding="utf-8")
     for command, file in itertools.product(commands, {path, path.parent} - {Path()}):
-        done = CliRunner().invoke(app, [command, str(file), "--out", "new"])
+        done = contact1d(command, file, "--out", "new")
         assert done.exit_code == 2
         assert what in done.output
         assert advice in done.output

@@ -12,10 +12,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.optimize import brentq
-from typer.testing import CliRunner
 
 from contact1d import Contact1dError, Run, from_material, run
-from contact1d.__main__ import app
+from tests.command import contact1d
 from tests.scenes import MODULUS as STEEL_ON_GLASS
 from tests.scenes import ROOT, chains
 from validation.references.maugis import LAMBDA_OVER_TABOR, marks
@@ -174,10 +173,10 @@ TRAPEZOID = 1e-4
 """Relative: the estimate's grid has 4000 steps to the cutoff."""
 
 
-def identify(force: float, a_0: float, *options: object) -> Any:
+def identify(force: float, a_0: float, *options: str | float) -> Any:
     given = {"contact-modulus": MODULUS, "radius": RADIUS, "adhesion-force": force, "zero-load-radius": a_0}
     arguments = [str(part) for name, value in given.items() for part in (f"--{name}", value)]
-    return CliRunner().invoke(app, ["identify", *arguments, *map(str, options)])
+    return contact1d("identify", *arguments, *options)
 
 
 def row_work(done: Run) -> float:

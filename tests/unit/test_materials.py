@@ -8,11 +8,10 @@ import tomllib
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
 import contact1d
 from contact1d import Scene, SceneError, read_scene
-from contact1d.__main__ import app
+from tests.command import contact1d as command
 from tests.scenes import ROOT, STEEL_ON_GLASS
 
 PAGE = ROOT / "docs" / "materials.md"
@@ -75,7 +74,7 @@ def test_a_name_that_is_none_is_one_sentence(upper: Any, words: str) -> None:
 
 
 def test_the_command_lists_them() -> None:
-    done = CliRunner().invoke(app, ["materials"])
+    done = command("materials")
     assert done.exit_code == 0
     for line, (name, one) in zip(done.output.splitlines(), MATERIALS.items(), strict=True):
         assert line.startswith(name)

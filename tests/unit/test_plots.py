@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import Run, run
-from contact1d.__main__ import app
 from contact1d.analysis import figures, plots
 from contact1d.analysis.chart import Axis, Chart, Panel, Series
 from contact1d.workflow.units import Scales, scale_of
+from tests.command import contact1d
 from tests.pages import figures_on
 from tests.scenes import STEEL_ON_GLASS, chains
 
@@ -125,7 +124,7 @@ def test_a_hold_is_drawn_over_time(kind: str, tmp_path: Path) -> None:
     assert file[-8:-4] == b"IEND"
     assert (done.folder / "force_displacement.png").is_file() == (kind == "displacement")  # it is held otherwise
     page = tmp_path / "r.html"
-    assert CliRunner().invoke(app, ["report", str(done.folder), "--out", str(page)]).exit_code == 0
+    assert contact1d("report", done.folder, "--out", page).exit_code == 0
     assert f"{kind.capitalize()} over time" in [chart["title"] for chart in figures_on(page)["charts"]]
 
 

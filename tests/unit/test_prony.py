@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import Contact1dError, SceneError, prony_terms, read_scene, run
-from contact1d.__main__ import app
+from tests.command import contact1d
+from tests.scenes import refused
 
 E = 3e6
 SCENE = """
@@ -56,9 +56,7 @@ def test_a_series_in_a_file_is_that_of_a_list(text: str, tmp_path: Path) -> None
 )
 def test_a_wrong_file_is_named_with_its_line(text: str, words: str, tmp_path: Path) -> None:
     (tmp_path / "t.csv").write_text(text)
-    with pytest.raises(SceneError) as caught:
-        read_scene(SCENE + FILE, folder=tmp_path)
-    assert words in str(caught.value)
+    assert words in str(refused(SCENE + FILE, folder=tmp_path))
 
 
 def test_one_term_is_changed_by_its_index() -> None:
@@ -107,8 +105,7 @@ def test_a_contact_by_the_terms_of_a_table_is_that_of_its_body(tmp_path: Path) -
     t = np.geomspace(1e-3, 1e3, 40)
     rows = np.c_[1e6 * t, relaxed(t, [0.5, 0.3, 0.2], [1.5, 10.0])]
     np.savetxt(tmp_path / "e.txt", rows, delimiter=";", header="t [µs];modulus/MPa", comments="", encoding="latin-1")
-    command = ["terms", str(tmp_path / "e.txt"), "--out", str(tmp_path / "t.csv")]
-    done = CliRunner().invoke(app, command)
+    done = contact1d("terms", tmp_path / "e.txt", "--out", tmp_path / "t.csv")
     assert (done.stderr, done.stdout[:27]) == ("", "instantaneous modulus: 1.00")
     scene = read_scene(SCENE + FILE, folder=tmp_path)
     found, exact = (run(one, figures=False) for one in (scene, SCENE + LISTED))

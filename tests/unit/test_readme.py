@@ -12,11 +12,11 @@ from statistics import median
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import from_material, read_scene, sweep
 from contact1d.__main__ import app
 from contact1d.workflow.fit.plan import read_fit
+from tests.command import contact1d
 from tests.pages import require_shown
 from tests.scenes import ROOT, read_json
 from tests.sweeps import Lost
@@ -69,7 +69,7 @@ def printed(command: str) -> str:
 
 
 def invoked(command: str) -> str:
-    done = CliRunner().invoke(app, shlex.split(command)[1:])
+    done = contact1d(*shlex.split(command)[1:])
     assert done.exit_code == 0, f"{command}: {done.output}"
     return done.stdout
 

@@ -12,11 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from contact1d import run
-from contact1d.__main__ import app
 from contact1d.analysis.theory.mindlin import mindlin_cycle_energy
+from tests.command import contact1d
 from tests.pages import require_shown
 from tests.scenes import ROOT
 from validation.references.mindlin import mindlin_loop_area
@@ -88,7 +87,7 @@ def test_the_first_cycle_is_the_steady_state_and_cycles_are_their_displacements(
 
 def test_the_page_shows_what_its_scene_prints_and_a_loop(tmp_path: Path) -> None:
     (tmp_path / "fretting.toml").write_text(TEXT, encoding="utf-8")
-    done = CliRunner().invoke(app, ["run", str(tmp_path / "fretting.toml"), "--out", str(tmp_path / "run"), "-q"])
+    done = contact1d("run", tmp_path / "fretting.toml", "--out", tmp_path / "run", "-q")
     assert done.exit_code == 0, done.output
     names = ("  tangential force", "  contact radius", "  stick radius", "  dissipated energy")
     lines = [line for line in done.stdout.splitlines() if line.startswith(names)]

@@ -68,6 +68,14 @@ def exact(done: Run, coefficient: float = MU) -> tuple[list[float], list[float]]
     return forces, dissipated
 
 
+def require_sums(done: Run, loads: list[float]) -> None:
+    """Every row of a run under these loads is the reference's, and so is what it dissipates."""
+    forces, dissipated = exact(done)
+    assert done.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
+    assert done.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
+    assert done.friction["normal_force"] == pytest.approx(loads, rel=EXACT)
+
+
 LOOPS = [0.0, 0.1, 0.2, 0.1, -0.1, -0.2, 0.0, 0.2, 0.3, 0.45, 0.2, -0.4, 0.0]
 UNEQUAL = {
     "upper": {"youngs_modulus": 5e6, "poisson_ratio": 0.48}, "lower": {"youngs_modulus": 3e6, "poisson_ratio": 0.2},
@@ -80,15 +88,7 @@ def test_every_row_is_the_sum_over_springs_with_sliders(material: dict[str, Any]
     """F_x on a way with reversals and sliding, and what it dissipates."""
     stiffness = {"bulk_stiffness": "auto", "bulk_stiffness_tangential": None} if material else {}
     done = run(tables(LOOPS, stiffness) | ({"material": material} if material else {})).model
-    require_exact(done, [40.0] * len(LOOPS))
-
-
-def require_exact(done: Run, loads: Sequence[float]) -> None:
-    """Forces and losses are the reference's."""
-    forces, dissipated = exact(done)
-    assert done.friction["tangential_force"] == pytest.approx(forces, abs=EXACT * MU * 40.0)
-    assert done.friction["dissipated_energy"] == pytest.approx(dissipated, abs=AREA * dissipated[-1])
-    assert done.friction["normal_force"] == pytest.approx(loads, rel=EXACT)
+    require_sums(done, [40.0] * len(LOOPS))
 
 
 def at_spacing(spacing: float) -> dict[str, Any]:
@@ -146,4 +146,4 @@ def test_a_load_that_varies_with_the_way_is_exact_with_what_it_dissipates() -> N
     phase = np.linspace(0.0, 6.0 * np.pi, 60)
     loads = (25.0 + 15.0 * np.cos(1.3 * phase)).tolist()
     done = run(tables((0.3 * np.sin(phase)).tolist(), normal_force=loads))
-    require_exact(done, loads)
+    require_sums(done, loads)

@@ -16,10 +16,9 @@ from typing import Any
 import pytest
 from matplotlib import pyplot
 from scipy.optimize import brentq
-from typer.testing import CliRunner
 
 from contact1d import Quantity, read_scene
-from contact1d.__main__ import app
+from tests.command import contact1d
 from tests.pages import require_shown
 from tests.scenes import ROOT
 
@@ -59,7 +58,7 @@ def shell(block: str) -> str:
     printed = []
     for line in block.splitlines():
         if line.startswith("contact1d "):
-            done = CliRunner().invoke(app, shlex.split(line)[1:])
+            done = contact1d(*shlex.split(line)[1:])
             assert done.exit_code == 0, f"{line}: {done.output}"
             printed += takewhile(str.strip, done.stdout.splitlines())
     rows = [re.split(" {2,}", line.strip()) for line in printed if line.startswith(" ")]
