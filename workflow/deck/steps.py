@@ -59,7 +59,7 @@ class Row:
 class Displace(Row):
     """The plate is set to a displacement [LU] and the particles relax."""
 
-    step: ClassVar[str] = "displace"
+    step = "displace"
     displacement: float
 
 
@@ -72,7 +72,7 @@ class Cohere(Displace):
         height: mean of g(x) over the contact [LU].
     """
 
-    step: ClassVar[str] = "sweep_cohesive"
+    step = "sweep_cohesive"
     edge: float
     reach: float
     height: float
@@ -82,7 +82,7 @@ class Cohere(Displace):
 class Spend(Displace):
     """The plate reaches a displacement [LU] after a duration [TU] with a velocity [LU/TU], positive in approach."""
 
-    step: ClassVar[str] = "sweep_timed"
+    step = "sweep_timed"
     duration: float
     velocity: float
 
@@ -96,7 +96,7 @@ class Draw(Row):
         place: position along x [LU].
     """
 
-    step: ClassVar[str] = "sweep_along"
+    step = "sweep_along"
     displacement: float
     place: float
 
@@ -105,7 +105,7 @@ class Draw(Row):
 class DisplaceInTime(Row):
     """The plate is set to a displacement [LU] and the particles move for a number of timesteps."""
 
-    step: ClassVar[str] = "displace_dynamic"
+    step = "displace_dynamic"
     displacement: float
     steps: int
 
@@ -114,7 +114,7 @@ class DisplaceInTime(Row):
 class UnderLoad(Row):
     """Plate and particles move for a number of timesteps under a load [FU], compression positive."""
 
-    step: ClassVar[str] = "load"
+    step = "load"
     load: float
     steps: int
 
@@ -123,7 +123,7 @@ class UnderLoad(Row):
 class Launch(Row):
     """The plate moves for a number of timesteps, at first towards the plane at a velocity [LU/TU] > 0."""
 
-    step: ClassVar[str] = "launch"
+    step = "launch"
     velocity: float
     steps: int
 
@@ -132,7 +132,7 @@ class Launch(Row):
 class LaunchAlong(Launch):
     """The plate also moves along x, at first at the velocity of the contact point, `slip` [LU/TU]."""
 
-    step: ClassVar[str] = "launch_along"
+    step = "launch_along"
     slip: float
 
 
@@ -140,7 +140,7 @@ class LaunchAlong(Launch):
 class Fly(Row):
     """The plate moves on for a number of timesteps."""
 
-    step: ClassVar[str] = "fly"
+    step = "fly"
     steps: int
 
 
@@ -148,7 +148,7 @@ class Fly(Row):
 class DrawnOff(Row):
     """Plate and particles move while the plate's spring [FU/LU] has its far end at a displacement [LU]."""
 
-    step: ClassVar[str] = "draw"
+    step = "draw"
     spring: float
     end: float
     steps: int
@@ -168,7 +168,7 @@ class Hold(Row):
         steps: largest number of timesteps.
     """
 
-    step: ClassVar[str] = "hold"
+    step = "hold"
     start: int
     load: float
     damping: float

@@ -118,7 +118,7 @@ class Jkr(Law):
     is_lossless = False
     rules: ClassVar[tuple[type[RadiusRule], ...]] = (Clinging, Held)
     file = "adhesion.cells"
-    closed_forms: ClassVar[tuple[str, ...]] = ("adhesive", "transition", "dmt")
+    closed_forms = ("adhesive", "transition", "dmt")
     exact: ClassVar[tuple[str, ...]] = ("adhesive",)
 
     work: float = field(kw_only=True)
