@@ -19,6 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -313,7 +314,7 @@ def _target_errors(case: Reduction, trace: Trace, error: Array, margin: float = 
         force, d = float(trace.force[i]), float(trace.displacement[i])
         parts = abs(wanted - force), float(error[i])
         off = max(parts) if trace.given == "load" else sum(parts)  # an unbalanced load is both
-        stiffness = float(_stiffness(case, np.asarray([d]))[0])
+        stiffness = value_at(partial(_stiffness, case), d)
         distances[i] = margin * abs(displacement_under(trace, i, force - off, stiffness) - d)
     return distances
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -20,6 +20,7 @@ from contact1d.workflow.deck.steps import Displace, Draw, Phase, Row, swept
 from contact1d.workflow.deck.system import ANCHORS, PARTICLES
 from contact1d.workflow.engine.failure import NOT_FINITE
 from contact1d.workflow.engine.frames import last_frames
+from contact1d.workflow.engine.progress import Meanwhile
 from contact1d.workflow.engine.session import EngineError, Session
 
 ATOM_UNITS = {"x": "LU", "v_opposite_x": "FU", "v_opposite_z": "FU"}
@@ -54,7 +55,7 @@ class Contact:
         rows_seconds: time in LAMMPS for load steps [s].
     """
 
-    def __init__(self, deck: Deck, session: Session, meanwhile: Callable[[], object] | None = None) -> None:
+    def __init__(self, deck: Deck, session: Session, meanwhile: Meanwhile = None) -> None:
         """Set up the bodies in the LAMMPS session, by the first commands of the deck.
 
         `meanwhile` is called while LAMMPS reads the bodies.
@@ -159,9 +160,7 @@ class Contact:
         self._unfinished = ""
         (self.session.folder / FRAMES).unlink(missing_ok=True)
 
-    def replay(
-        self, phases: Sequence[Phase], relaxed: bool = False, meanwhile: Callable[[], object] | None = None
-    ) -> list[State]:
+    def replay(self, phases: Sequence[Phase], relaxed: bool = False, meanwhile: Meanwhile = None) -> list[State]:
         """Run all load steps of `phases`, finish the contact, and return one state for each load step, in order.
 
         Args:
@@ -242,7 +241,7 @@ class Contact:
         return max(1, MOST_NUMBERS // len(self._x))
 
     def _states_of_run(
-        self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Callable[[], object] | None
+        self, text: str, rows: Sequence[tuple[str, Row]], first: int, meanwhile: Meanwhile
     ) -> list[State]:
         """Run load steps that are one run on a rigid plane, a timestep each without relaxation; return their states.
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import shutil
 import threading
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,7 +25,7 @@ from contact1d.workflow.continuation.trace import Search, Trace, of_states
 from contact1d.workflow.deck.deck import Deck
 from contact1d.workflow.deck.steps import Fly, Row, launch, numbered
 from contact1d.workflow.deck.system import write_system
-from contact1d.workflow.engine.progress import Progress
+from contact1d.workflow.engine.progress import Meanwhile, Progress
 from contact1d.workflow.engine.session import Engine
 from contact1d.workflow.errors import UntrustedError
 from contact1d.workflow.laws.particles import Particles
@@ -89,7 +89,7 @@ class RunContext:
     through: bool = field(default=False, init=False)
 
     @contextmanager
-    def contact(self, purpose: str = "", meanwhile: Callable[[], object] | None = None) -> Iterator[Contact]:
+    def contact(self, purpose: str = "", meanwhile: Meanwhile = None) -> Iterator[Contact]:
         """Yield a contact at displacement 0 in a new LAMMPS instance, which is closed at the end of the `with` block.
 
         Its time is then added to `clock`, and its last phase and timestep are kept, also after an error. `purpose` is
@@ -152,7 +152,7 @@ class ContactBranch:
     moves, given = False, "displacement"
     _direction, _turned, _phase = 0, False, ""
 
-    def __init__(self, context: RunContext, meanwhile: Callable[[], object] | None = None) -> None:
+    def __init__(self, context: RunContext, meanwhile: Meanwhile = None) -> None:
         """Prepare a contact without states; LAMMPS starts with the `with` statement.
 
         `meanwhile` is called while LAMMPS reads the bodies. The reduced model is made here.

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from contact1d.workflow.engine.launcher import Listener, cause_among_ranks, launcher_of, on_one_node
+from contact1d.workflow.engine.progress import Meanwhile
 
 BOOT = """
 import sys, types
@@ -162,7 +163,7 @@ class WorkerProcess:
         request: tuple[Any, ...],
         deadline: float,
         tick: Callable[[], None] | None = None,
-        meanwhile: Callable[[], object] | None = None,
+        meanwhile: Meanwhile = None,
         interval: float = 0.2,
     ) -> Any:
         """Send a request and return the answer; any exception before that, also of a callback, kills the worker.

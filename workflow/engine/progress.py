@@ -7,7 +7,11 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from typing import Any, TextIO
+
+Meanwhile = Callable[[], object] | None
+"""What to do while LAMMPS works; None: nothing."""
 
 
 class Progress:

@@ -11,7 +11,7 @@ says what, in which phase and at which step; the files of the folder stay, and t
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from contact1d.workflow.engine.failure import EngineError, plain_message
 from contact1d.workflow.engine.process import OutOfTimeError, WorkerLostError, WorkerProcess, borrow, give_back
-from contact1d.workflow.engine.progress import Progress, Silent
+from contact1d.workflow.engine.progress import Meanwhile, Progress, Silent
 
 LOG = "log.lammps"
 
@@ -94,7 +94,7 @@ class Session:
         text: str,
         phase: str | None = None,
         expected_steps: int | None = None,
-        meanwhile: Callable[[], object] | None = None,
+        meanwhile: Meanwhile = None,
     ) -> None:
         """Run LAMMPS commands in the folder of the session.
 
@@ -128,7 +128,7 @@ class Session:
         text: str,
         values: Sequence[str] = (),
         atoms: Sequence[str] = (),
-        meanwhile: Callable[[], object] | None = None,
+        meanwhile: Meanwhile = None,
     ) -> Reading:
         """Run commands and return values and per-atom arrays, all in one round trip: one point of a curve.
 
@@ -153,7 +153,7 @@ class Session:
         texts: Sequence[str],
         values: Sequence[str] = (),
         atoms: Sequence[str] = (),
-        meanwhile: Callable[[], object] | None = None,
+        meanwhile: Meanwhile = None,
     ) -> list[Reading]:
         """Return several points of a curve in one round trip: a reading after each text of LAMMPS commands, in this
         order.
@@ -208,7 +208,7 @@ class Session:
             self.phase = phase
             self._progress.phase(phase, expected_steps)
 
-    def _ask(self, *request: Any, meanwhile: Callable[[], object] | None = None) -> Any:
+    def _ask(self, *request: Any, meanwhile: Meanwhile = None) -> Any:
         """Send a request to the worker and return its answer; any failure ends the session and kills the worker.
 
         An exception that is raised meanwhile, KeyboardInterrupt for instance, passes on and does the same.

@@ -14,7 +14,7 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
-from functools import cache, cached_property
+from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -277,7 +277,7 @@ class Law(ABC):
         contact it is the same for any limit, one spacing at least: the contact radius of Jkr and Receding, and the
         radius up to which the attraction acts of Maugis. Results are cached.
         """
-        return cache(lambda displacement, gap: float(self.half_widths(np.asarray([displacement]), gap)[0]))
+        return cache(lambda displacement, gap: value_at(partial(self.half_widths, gap=gap), displacement))
 
     def half_widths(self, displacements: Array, gap: float) -> Array:
         """Return the half-widths, (m,) [LU], within which the undeformed gap is below `gap` [LU] at displacements (m,)
