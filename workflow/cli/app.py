@@ -9,7 +9,7 @@ from enum import StrEnum
 from glob import escape, glob
 from pathlib import Path
 from shlex import quote
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer import Argument, Option
@@ -126,6 +126,11 @@ Quiet = Annotated[bool, Option("--quiet", "-q", help="Print the numbers only.")]
 FigureFormat = Annotated[Format, Option("--format", help="File format of the figures.")]
 
 
+def _parallel(meaning: str) -> Any:
+    """Return a typer option of how many of something run at a time, by default as many as there are processors."""
+    return Option(min=1, help=meaning, show_default="processors")
+
+
 def run(
     scene: SceneFile,
     out: Annotated[
@@ -137,9 +142,7 @@ def run(
     figures: Figures = True,
     format_: FigureFormat = Format.PNG,
     time_limit: Annotated[float, Option(min=0.1, help="Seconds of wall time for LAMMPS, per pass.")] = 3600.0,
-    workers: Annotated[
-        int | None, Option(min=1, help="Repeats of a thermal pull-off in parallel.", show_default="processors")
-    ] = None,
+    workers: Annotated[int | None, _parallel("Repeats of a thermal pull-off in parallel.")] = None,
     ranks: Annotated[int, Option(min=1, help="MPI ranks (processors) that share one large contact.")] = 1,
     quiet: Quiet = False,
 ) -> None:
@@ -215,9 +218,7 @@ def sweep(
         Option(help="Folder of the sweep; its finished points stay.", show_default="sweeps/<name of the file>"),
     ] = None,
     executor: Annotated[str, Option(help="`local`: processes here; `slurm`: jobs of a cluster.")] = "local",
-    workers: Annotated[
-        int | None, Option(min=1, help="Processes or jobs in parallel.", show_default="processors")
-    ] = None,
+    workers: Annotated[int | None, _parallel("Processes or jobs in parallel.")] = None,
     partition: Annotated[str | None, Option(help="Partition of Slurm.", show_default="its default")] = None,
     figures: Figures = True,
     format_: FigureFormat = Format.PNG,
@@ -244,9 +245,7 @@ def sweep(
 def fit(
     file: Annotated[Path, Argument(metavar="FIT", help="A fit file (TOML).", show_default=False)],
     out: Annotated[Path | None, Option(help="Folder.", show_default="fits/<name of the file>")] = None,
-    workers: Annotated[
-        int | None, Option(min=1, help="Processes, of several curves.", show_default="processors")
-    ] = None,
+    workers: Annotated[int | None, _parallel("Processes, of several curves.")] = None,
     quiet: Quiet = False,
 ) -> None:
     """Fit parameters of a scene, such as E and W, to a measured force curve, or to each of many.
@@ -281,7 +280,7 @@ def cost(
     set_: Set = None,
     without: Without = None,
     repeats: Annotated[int, Option(min=1, help="Runs of each variant; times are their medians.")] = 3,
-    workers: Annotated[int | None, Option(min=1, help="Runs in parallel.", show_default="processors")] = None,
+    workers: Annotated[int | None, _parallel("Runs in parallel.")] = None,
 ) -> None:
     """Measure the cost of accuracy: true error and CPU time of a scene over its tolerance, settings and effects.
 

@@ -13,9 +13,9 @@ import contact1d as api
 from contact1d.workflow.cli.ending import CALL_IS_WRONG, command, print_lines, stop
 
 
-def _number(unit: str, meaning: str) -> Any:
-    """Return a typer option, without a default shown, whose value is a number; `unit` stands for it in the help."""
-    return Option(metavar=unit, help=meaning, show_default=False)
+def _given(value: str, meaning: str) -> Any:
+    """Return a typer option without a default shown; `value` stands for its value in the help."""
+    return Option(metavar=value, help=meaning, show_default=False)
 
 
 def identify(
@@ -23,16 +23,13 @@ def identify(
         Path | None,
         Argument(metavar="MATERIAL", help="A contact in SI (TOML): bodies, attraction, load.", show_default=False),
     ] = None,
-    contact_modulus: Annotated[float | None, _number("PA", "E* of the pair of bodies.")] = None,
-    surface_energy: Annotated[float | None, _number("J/M2", "γ of one side, half the work of adhesion.")] = None,
-    run: Annotated[
-        Path | None,
-        Option(metavar="FOLDER", help="A finished pull_off, to find its LU and FU.", show_default=False),
-    ] = None,
-    radius: Annotated[float | None, _number("M", "Effective R of a sphere, to find its interaction.")] = None,
-    adhesion_force: Annotated[float | None, _number("N", "Measured F_A, in place of γ.")] = None,
-    zero_load_radius: Annotated[float | None, _number("M", "Measured a_0, together with F_A.")] = None,
-    length_unit: Annotated[float | None, _number("M", "One LU; default: about 28 particles in a_0.")] = None,
+    contact_modulus: Annotated[float | None, _given("PA", "E* of the pair of bodies.")] = None,
+    surface_energy: Annotated[float | None, _given("J/M2", "γ of one side, half the work of adhesion.")] = None,
+    run: Annotated[Path | None, _given("FOLDER", "A finished pull_off, to find its LU and FU.")] = None,
+    radius: Annotated[float | None, _given("M", "Effective R of a sphere, to find its interaction.")] = None,
+    adhesion_force: Annotated[float | None, _given("N", "Measured F_A, in place of γ.")] = None,
+    zero_load_radius: Annotated[float | None, _given("M", "Measured a_0, together with F_A.")] = None,
+    length_unit: Annotated[float | None, _given("M", "One LU; default: about 28 particles in a_0.")] = None,
     tolerance: Annotated[float, Option(min=1e-5, max=0.1, help="Relative tolerance of the scene.")] = 1e-3,
     out: Annotated[
         Path | None,

@@ -32,6 +32,8 @@ from contact1d.workflow.laws.particles import Particles
 from contact1d.workflow.laws.path import Array, History
 from contact1d.workflow.model.free import FLIGHT, STRETCHES, is_over, stretch
 from contact1d.workflow.model.reduced import reduced
+from contact1d.workflow.model.settings import Settings
+from contact1d.workflow.scene import Scene
 
 ASIDE = ".aside"
 """Folder of a context aside, in the run folder."""
@@ -87,6 +89,11 @@ class RunContext:
     timestep: int = field(default=0, init=False)
     left: Outcome | None = field(default=None, init=False)
     through: bool = field(default=False, init=False)
+
+    @property
+    def inputs(self) -> tuple[Scene, Settings]:
+        """The scene that is run, and its settings."""
+        return self.deck.scene, self.deck.settings
 
     @contextmanager
     def contact(self, purpose: str = "", meanwhile: Meanwhile = None) -> Iterator[Contact]:
@@ -158,7 +165,7 @@ class ContactBranch:
         `meanwhile` is called while LAMMPS reads the bodies. The reduced model is made here.
         """
         self.context, self._meanwhile = context, meanwhile
-        self.scene, self.settings = context.deck.scene, context.deck.settings
+        self.scene, self.settings = context.inputs
         self.model: Particles = reduced(self.scene, self.settings)
         self.states: list[State] = []
         self.legs: list[int] = []

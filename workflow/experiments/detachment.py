@@ -232,7 +232,7 @@ def _pull(context: RunContext, experiment: PullOff, stop: threading.Event) -> De
             set.
         EngineError: LAMMPS failed.
     """
-    scene, settings = context.deck.scene, context.deck.settings
+    scene, settings = context.inputs
     ramp = load_ramp(scene, settings, experiment)
     *before, pulling = planned_detachment(scene, settings, experiment)
     with context.contact() as contact:
@@ -277,7 +277,7 @@ def pull_off_thermal(context: RunContext, experiment: PullOff) -> Outcome:
             or the contact then reaches the end of its chain.
         EngineError: LAMMPS failed.
     """
-    scene, settings = context.deck.scene, context.deck.settings
+    scene, settings = context.inputs
     detachments, ramp = run_pulls(context, experiment), load_ramp(scene, settings, experiment)
     seeds = scene.the(Noise).seed + np.arange(float(len(detachments)))
     series = Series({"seed": seeds} | recorded(detachments, ("force", "time")))

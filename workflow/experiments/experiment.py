@@ -159,7 +159,7 @@ class Scripted(Experiment[K]):
                 chain or does not sustain a force of the scene.
             EngineError: LAMMPS failed.
         """
-        scene, settings = context.deck.scene, context.deck.settings
+        scene, settings = context.inputs
         case = self.reduction(scene, settings)
         branch, trace = self._driven(context, case)
         states, phases = tuple(branch.states), branch.contact.phases
@@ -198,7 +198,7 @@ class Scripted(Experiment[K]):
         if context.deck.scene.method != "dynamic" or not trace.time.any():
             return {}
         traces = []
-        for scene, settings in slower(context.deck.scene, context.deck.settings):
+        for scene, settings in slower(*context.inputs):
             with context.aside(Deck(scene, settings)) as repeat:
                 traces.append(self._driven(repeat, case)[1])
         return {"time": traces}

@@ -44,7 +44,7 @@ class LoadExperiment(Scripted[Load]):
                 rest; or the contact reaches the end of its chain.
             EngineError: LAMMPS failed.
         """
-        scene, settings = context.deck.scene, context.deck.settings
+        scene, settings = context.inputs
         load = self.given(scene).force
         surely = scene.method != "dynamic" or LoadBranch(context).holds_more(load)
         outcome = super().run(context)

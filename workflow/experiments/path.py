@@ -64,7 +64,7 @@ class PathExperiment(Scripted[Path]):
                 its chain.
             EngineError: LAMMPS failed.
         """
-        scene, settings = context.deck.scene, context.deck.settings
+        scene, settings = context.inputs
         case, positions = self.reduction(scene, settings), positions_of(scene, settings)
         plan = self._plan(context.deck, case.model) if scene.is_stepped else None
         with context.contact(meanwhile=lambda: case.lattice) as contact:

@@ -53,7 +53,7 @@ class SlideExperiment(Experiment[Slide]):
                 bodies pass through each other; or, without a given path, the plate never slides steadily.
             EngineError: LAMMPS failed.
         """
-        scene, settings = context.deck.scene, context.deck.settings
+        scene, settings = context.inputs
         load, legs = self.given(scene).normal_force, self.planned(scene, settings)[1:]
         with context.contact() as contact:
             states = [self.loaded(contact, load)]

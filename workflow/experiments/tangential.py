@@ -64,7 +64,7 @@ class TangentialExperiment(Scripted[Tangential]):
                 of its chain.
             EngineError: LAMMPS failed.
         """
-        scene, settings = context.deck.scene, context.deck.settings
+        scene, settings = context.inputs
         case = self.reduction(scene, settings)
         plan = self._plan(context.deck, case.model)
         with context.contact(meanwhile=lambda: case.lattice) as contact:

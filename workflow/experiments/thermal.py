@@ -122,7 +122,7 @@ def thermal_load(context: RunContext, load: float, most_samples: int = 2_000) ->
             reaches the end of its chain.
         EngineError: LAMMPS failed.
     """
-    scene, settings = context.deck.scene, context.deck.settings
+    scene, settings = context.inputs
     goal = settings.tolerance * max(settings.forces.rest, abs(settings.largest_displacement))
     settling, sampling = planned_samples(settings, load)
     samples: list[State] = []

@@ -137,7 +137,7 @@ def _run(context: RunContext, started: float, figures: bool | str, written: Sequ
     Raises:
         RunError: LAMMPS failed, or the result can't be trusted; results.json says why.
     """
-    scene, settings, folder = context.deck.scene, context.deck.settings, context.folder
+    (scene, settings), folder = context.inputs, context.folder
     if large := in_words(scene, settings.chains.upper, settings.forces.cutoff):
         context.progress.note(large)
     for warning in implausible(scene, scales_of(scene, {}), {}).values():
