@@ -33,7 +33,7 @@ from validation.references.relaxing import Power, sphere
 
 TINY = 1e-300
 """In place of a d of 0, where a = 0."""
-STEPS = 1000
+STEPS = 4000
 """Steps of an impact; w is straight within each, an error of the order of 1/STEPS^2."""
 PARABOLOID = sphere(1.0)
 Point = tuple[float, float, float]
