@@ -33,8 +33,6 @@ from validation.references.relaxing import Power, sphere
 
 TINY = 1e-300
 """In place of a d of 0, where a = 0."""
-STEPS = 4000
-"""Steps of an impact; w is straight within each, an error of the order of 1/STEPS^2."""
 PARABOLOID = sphere(1.0)
 Point = tuple[float, float, float]
 
@@ -83,7 +81,7 @@ class Superposition:
         return added[-1][2]
 
 
-def rebound(psi: float, chi: float, normal: Function, lasts: float) -> float:
+def rebound(psi: float, chi: float, normal: Function, lasts: float, steps: int = 1000) -> float:
     """v_s'/v_s of an impact of m = v_n = 1.
 
     Args:
@@ -91,6 +89,7 @@ def rebound(psi: float, chi: float, normal: Function, lasts: float) -> float:
         chi: kappa (1 + m l^2/I)/2.
         normal: F_n(d) [force], 0 for d <= 0.
         lasts: about how long the impact is [time].
+        steps: of an impact; w is straight within each, an error of the order of 1/steps^2.
     """
     contact = Superposition(normal)
 
@@ -99,7 +98,7 @@ def rebound(psi: float, chi: float, normal: Function, lasts: float) -> float:
         force = contact.after(d, u)[1][-1][2] if d > 0.0 else 0.0
         return [y[1], -normal(d), y[3], -2.0 * chi * force]
 
-    motion = RK45(change, 0.0, [0.0, 1.0, 0.0, psi], math.inf, max_step=lasts / STEPS, rtol=1e-9, atol=1e-12)
+    motion = RK45(change, 0.0, [0.0, 1.0, 0.0, psi], math.inf, max_step=lasts / steps, rtol=1e-9, atol=1e-12)
     motion.step()
     while motion.y[0] > 0.0:
         contact.move(float(motion.y[0]), float(motion.y[2]))
@@ -107,12 +106,12 @@ def rebound(psi: float, chi: float, normal: Function, lasts: float) -> float:
     return float(motion.y[3] / psi)
 
 
-def of_power(psi: float, chi: float, body: Power = PARABOLOID) -> float:
+def of_power(psi: float, chi: float, body: Power = PARABOLOID, steps: int = 1000) -> float:
     """The same of f(r) = c r^n, in closed form while the contact slides throughout."""
     if psi >= max(1.0, 4.0 * chi - 1.0):
         return 1.0 - 4.0 * chi / psi
     lasts = impact.elastic(body, 1.0, 1.0, 1.0).contact_time
-    return rebound(psi, chi, lambda d: body.volume(body.radius(d)), lasts)
+    return rebound(psi, chi, lambda d: body.volume(body.radius(d)), lasts, steps)
 
 
 def sticking(chi: float, body: Power = PARABOLOID) -> float:
