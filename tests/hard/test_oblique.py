@@ -20,7 +20,7 @@ BOOKED = 1e-4
 """Error of energies along the path of contact points between the states of a curve."""
 SOLVED = 1e-5
 """Error of the reference, whose motion is integrated in steps."""
-SOME = (0.2, 2.0)
+SOME = (0.6,)
 
 
 def hit(slip: float, v: float = 0.1, friction: float = 0.3, chi: float = 1.75 * KAPPA, mass: float = MASS,
@@ -73,9 +73,9 @@ def test_any_power_rebounds_as_by_superposition(seed: int) -> None:
 
 @pytest.mark.parametrize(
     "given",
-    [{"friction": 0.05}, {"v": 1e-4},
+    [{"v": 1e-4},
      *(pytest.param(one, marks=pytest.mark.slow) for one in (
-         {"friction": 1.0}, {"v": 100.0}, {"mass": 1e-6}, {"modulus": 1e3}, {"modulus": 1e12}, {"radius": "10 nm"},
+         {"friction": 0.05}, {"friction": 1.0}, {"v": 100.0}, {"mass": 1e-6}, {"modulus": 1e3}, {"modulus": 1e12}, {"radius": "10 nm"},
          {"radius": "10 m"}))],
 )  # fmt: skip
 def test_a_paraboloid_knows_two_numbers(given: dict[str, Any]) -> None:
