@@ -200,7 +200,7 @@ def _oblique(rows: Rows) -> str:
         found = [rows[row_name(model, at_psi(psi), "slip")] for model in GIVEN.tangential]
         own = [rows.ours(at_psi(psi), "tangential_restitution")] if ours else []
         lines.append([f"{psi:g}", value(found[0].reference.value), *own, *(apart(row, 3) for row in found)])
-    own = ["contact1d, its negative"] if ours else []
+    own = ["contact1d, −v_s′/v_s"] if ours else []
     return table(["ψ", "exact v_s′/v_s", *own, *(f"`{model}`" for model in GIVEN.tangential)], lines)
 
 
