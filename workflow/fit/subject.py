@@ -272,10 +272,10 @@ class Subject:
     def completed(self, u: Array) -> Array:
         """Return a copy of u (p,) with the baseline and the contact point set from the measured curve.
 
-        The offsets are the level of the baseline; the contact point is the one for which the contact has the largest
-        measured force, less the baseline, at its measured position. A contact point that is given has its value. All
-        are ratios to the ranges of measured positions and forces, other unknowns logarithms of ratios to their first
-        guess.
+        The offsets are the level of the baseline. The contact point is the median of those for which the contact has a
+        measured force, less the baseline, at its measured position, over all points with more than half of the largest
+        such force: a single point has all the noise. A contact point that is given has its value. All are ratios to the
+        ranges of measured positions and forces, other unknowns logarithms of ratios to their first guess.
         """
         u, index, measured = u.copy(), self.names.index(POINT), self.curve
         point = self.unknowns[index]
@@ -286,9 +286,9 @@ class Subject:
             u[index] = point.known[0] / point.scale
             return u
         branch, stiffness, _ = self.parts(self.problem.values(u))
-        least, top = int(np.argmin(branch.forces)), int(np.argmax(measured.forces))
-        z, F = branch.positions(stiffness)[least:], branch.forces[least:]
-        u[index] = (measured.positions[top] - np.interp(measured.forces[top] - measured.baseline, F, z)) / point.scale
+        least, off = int(np.argmin(branch.forces)), measured.forces - measured.baseline
+        z, F, top = branch.positions(stiffness)[least:], branch.forces[least:], off >= 0.5 * off.max()
+        u[index] = float(np.median(measured.positions[top] - np.interp(off[top], F, z))) / point.scale
         return u
 
 
