@@ -130,8 +130,9 @@ class Branch:
         quarter = np.searchsorted(F, F[0] + 0.25 * abs(F[0])) if F[0] < 0.0 else 1
         quarter = int(min(max(quarter, 1), z.size - 1))
         slope = 3.0 * (F[quarter] - F[0]) / max(z[quarter] - z[0], 1e-6 * (z[-1] - z[0]), 1e-300)
-        with np.errstate(over="ignore"):  # of an adhesion that is far too strong, whose square is still a number
-            return np.where(below, np.clip(F[0] + slope * (positions - z[0]), -1e100, 1e100), forces)
+        most = 1e100  # of an adhesion that is far too strong, whose square is still a number
+        with np.errstate(over="ignore"):
+            return np.where(below, np.clip(F[0] + slope * (positions - z[0]), -most, most), forces)
 
     def snap_out(self, stiffness: float) -> tuple[float, float]:
         """Return (position z [LU] of the piezo from the contact point, force [FU], compression positive) at snap-out.

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 LIMIT = 3.0 * math.log(10.0)
 """Largest |u| of a positive parameter: it is sought over three decades to both sides of the value in the scene."""
 STARTS = 4
-"""Points of the global search that are starts of a least-squares fit."""
+"""Points of the global search that are starts of a least-squares fit, if far apart."""
 OUTLIER = 5.0
 """Whitened residual over its standard deviation beyond which a point is an outlier: one in 1.7 million."""
 LEVEL, TWO_SIDED = 0.95, 1.959964
@@ -201,8 +201,9 @@ class Problem:
             )
 
         low, high = np.array([unknown.limits for unknown in self.unknowns])[free].T
-        start, bounds = np.clip(u[free], low, high), (low - 1e-3, high + 1e-3)  # a start must be inside the bounds
-        options: dict[str, Any] = {"xtol": 1e-6, "ftol": 1e-6, "gtol": 1e-12, "max_nfev": 60}
+        start, margin = np.clip(u[free], low, high), 1e-3  # a start must be inside the bounds
+        bounds = low - margin, high + margin
+        options: dict[str, Any] = dict.fromkeys(("xtol", "ftol"), 1e-6) | {"gtol": 1e-12, "max_nfev": 60}
         options |= {"loss": "soft_l1", "f_scale": 2.0} if robust else {}
         fit = least_squares(rows, start, jacobian, bounds, x_scale="jac", **options)
         return completed(fit.x), 2.0 * float(fit.cost)
@@ -235,14 +236,20 @@ class Solution:
 
 
 def global_search(
-    problem: Problem, sought: Sequence[int], complete: Callable[[Array], Array], generations: int = 40, size: int = 16
+    problem: Problem,
+    sought: Sequence[int],
+    complete: Callable[[Array], Array],
+    generations: int = 40,
+    size: int = 16,
+    step: float = 0.125,
 ) -> list[Array]:
-    """Return starts u (p,) of a fit, four at most and the best first, from a search over the sought unknowns.
+    """Return starts u (p,) of a fit, six at most and the best first, from a search over the sought unknowns.
 
     u is the logarithm of the ratio of a positive unknown to its value in the scene, and is searched over three decades
     to either side. The valley of a good fit is some percent wide, in a plane of decades: a population is evolved, which
-    takes some thousand curves, and its best members are the starts. Equal arguments give equal starts. Where nothing is
-    sought, the one start is `complete` of 0.
+    takes some thousand curves, and its best members are starts. Most often these have met in one minimum: that is one
+    start, and further minima along its valley follow, of the residuals under their likeliest noise. Equal arguments
+    give equal starts. Where nothing is sought, the one start is `complete` of 0.
 
     Args:
         problem: what is fitted.
@@ -250,6 +257,7 @@ def global_search(
         complete: function that returns u with the unknowns set which follow from these.
         generations: most generations of the population.
         size: of the population, for each sought unknown.
+        step: least distance of two starts in the sought unknowns, and step along the valley.
     """
 
     def completed(member: Array) -> Array:
@@ -264,21 +272,104 @@ def global_search(
     def misfit(member: Array) -> float:
         """Return Σ |residual| [FU] of the compared points for the sought unknowns; 1e100 where it is NaN or larger."""
         total = float(np.abs(problem.residuals(completed(member))).sum())
-        return total if total < 1e100 else 1e100  # of NaN, too; and the square of it is a number
+        return min(1e100, total)  # of NaN, too; and the square of it is a number
 
     population = differential_evolution(
         misfit, [problem.unknowns[i].limits for i in sought], rng=1, maxiter=generations, popsize=size, tol=0.02,
         init="sobol", polish=False, x0=np.zeros(len(sought)),
     )  # fmt: skip
-    order = np.argsort(population.population_energies)[:STARTS]
-    return [completed(population.population[i]) for i in order]
+    members = population.population[np.argsort(population.population_energies)[:STARTS]]
+    likeliest = _estimate(problem, completed(members[0]), looks=1).best.noise
+
+    def white(member: Array) -> Array:
+        """Return the whitened residuals [FU] of the compared points, (n,), for the sought unknowns."""
+        return likeliest.whitened(problem.residuals(completed(member)))
+
+    starts: list[Array] = []
+    for member in [*members, *_further_minima(white, members[0], step)]:
+        if all(np.linalg.norm(member - start) > step for start in starts):
+            starts.append(member)
+    return [completed(start) for start in starts]
+
+
+def _further_minima(residuals: Callable[[Array], Array], best: Array, step: float) -> list[Array]:
+    """Return further minima of Σ |residual|, as points (s,), two at most, along the valley through a minimum.
+
+    The force softens or stiffens where the contact edge passes a kink of the tip. Another work of adhesion, with
+    modulus and contact point to it, moves this place, so that the sum may have several minima. The valley is followed
+    to both sides from the minimum, along the direction in which the residuals change least; on each side the least
+    minimum beyond a rise of the sum is returned.
+
+    Args:
+        residuals: function of a point (s,), logarithms of positive parameters, that returns the residuals (n,).
+        best: the minimum, (s,).
+        step: along the valley.
+    """
+    slopes = _slopes(residuals, best, residuals(best), np.eye(best.size))
+    if not np.isfinite(slopes).all():
+        return []
+    weakest = np.linalg.svd(slopes)[2][-1]
+    minima = []
+    for direction in (-weakest, weakest):
+        sums, points = _valley(residuals, best, direction, step)
+        low = [k for k in range(1, len(sums) - 1) if sums[k - 1] > sums[k] <= sums[k + 1]]
+        minima += [points[k] for k in sorted(low, key=sums.__getitem__)[:1]]
+    return minima
+
+
+def _valley(
+    residuals: Callable[[Array], Array], best: Array, direction: Array, step: float
+) -> tuple[list[float], list[Array]]:
+    """Return Σ |residual|, (k,), at k points (s,) along a valley of it, from a minimum on.
+
+    Each step goes on in the direction of the last one, and then at right angles to it by a step of Gauss and Newton,
+    which weighs a residual r with 1/(|r| + their mean magnitude): of large ones the magnitudes count. The valley ends
+    where the sum is twice the least one, or after a length of 2.
+
+    Args:
+        residuals: function of a point (s,), logarithms of positive parameters, that returns the residuals (n,).
+        best: the minimum, (s,).
+        direction: of the first step, (s,), of length 1.
+        step: its length, and the largest one in each direction at right angles.
+    """
+    magnitudes = np.abs(residuals(best))
+    sums, points, mean = [float(magnitudes.sum())], [best], float(magnitudes.mean()) or 1.0
+    while len(points) * step <= 2.0 and sums[-1] < 2.0 * min(sums):
+        point, across = points[-1] + step * direction, np.linalg.svd(direction[None])[2][1:]
+        r = residuals(point)
+        slopes = _slopes(residuals, point, r, across)
+        if not np.isfinite(slopes).all():
+            break
+        root = 1.0 / np.sqrt(np.abs(r) + mean)
+        point -= np.clip(np.linalg.lstsq(root[:, None] * slopes, root * r)[0], -step, step) @ across
+        direction = (point - points[-1]) / np.linalg.norm(point - points[-1])
+        sums.append(float(np.abs(residuals(point)).sum()))
+        points.append(point)
+    return sums, points
+
+
+def _slopes(
+    residuals: Callable[[Array], Array], point: Array, r: Array, directions: Array, step: float = 0.02
+) -> Array:
+    """Return the derivatives of residuals along some directions, (n, m), by their differences over a step.
+
+    Args:
+        residuals: function of a point (s,) that returns the residuals (n,).
+        point: where, (s,).
+        r: the residuals there, (n,).
+        directions: (m, s), maybe none.
+        step: in each direction.
+    """
+    rises = [residuals(point + step * direction) - r for direction in directions]
+    return np.array(rises).reshape(-1, r.size).T / step
 
 
 def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most_rounds: int = 12) -> Solution:
     """Return the least-squares fit from the best of several starts, under the noise that its residuals have.
 
-    The best start has the least Σ |residual| after a robust fit. Noise, outliers and fit then alternate; after
-    `most_rounds` without convergence the latest one is returned.
+    The best start has the largest likelihood after a robust fit, each under its most likely noise: residuals with a
+    memory may have a smaller sum in a wrong minimum. Noise, outliers and fit then alternate; after `most_rounds`
+    without convergence the latest one is returned.
 
     Args:
         problem: what is fitted.
@@ -286,12 +377,12 @@ def solved(problem: Problem, starts: Sequence[Array], rejects: bool = True, most
         rejects: whether outliers are excluded.
         most_rounds: largest number of rounds.
     """
-    fits, (white,) = [], noises([(0.0, 1.0)], problem.runs)
+    (white,) = noises([(0.0, 1.0)], problem.runs)
+    fits = []
     for start in starts:
         spread = float(np.median(np.abs(problem.residuals(start)))) or 1.0
-        u, _ = problem.least(start, white, spread, robust=True)
-        fits.append((float(np.abs(problem.residuals(u)).sum()), u))
-    _, u = min(fits, key=lambda fit: fit[0])
+        fits.append(problem.least(start, white, spread, robust=True)[0])
+    u = fits[0] if len(fits) == 1 else min(fits, key=lambda u: _unlikelihood(problem, u))
     outliers: list[int] = []
     for _ in range(most_rounds):
         best = _estimate(problem, u, looks=1).best
@@ -315,6 +406,18 @@ def _estimate(problem: Problem, u: Array, looks: int = 2) -> AveragedEstimate:
     """
     resting = problem.resting(problem.values(u), problem.runs)
     return averaged(problem.runs, problem.residuals(u), problem.slopes(u), problem.prior(u), looks, resting)
+
+
+def _unlikelihood(problem: Problem, u: Array) -> float:
+    """Return the negative logarithm of the likelihood of u under its likeliest noise, but for a constant.
+
+    It is n log σ + ½ log |V| + ½ Σ m² of n residuals with the covariance σ²V and misfits m of calibrations and bounds.
+
+    `u`: logarithm of the ratio of each positive unknown to its scale, the ratio of any other, (p,).
+    """
+    best = _estimate(problem, u, looks=1).best
+    known = float(np.sum(problem.prior(u)[:, -1] ** 2))
+    return problem.kept.size * math.log(best.deviation) + 0.5 * (best.noise.log_determinant + known)
 
 
 def _outliers(problem: Problem, u: Array, estimate: Estimate) -> Indices:

@@ -46,11 +46,11 @@ def compared(fit: Fitted, model: ContactModel) -> Fitted:
 
 
 def _starts(subject: Subject, outliers: Indices) -> list[Array]:
-    """Return starts (p,) of a fit: for JKR, DMT and Hertz up to four of a global search, the best first.
+    """Return starts (p,) of a fit: for JKR, DMT and Hertz those of a global search, the best first.
 
-    For Maugis these are the three best of twelve: JKR's and DMT's best fits, each at six ranges h₀ from e^−4 to e^3.5
-    times the given one; or both fits where the range is no unknown. Those of DMT are left out for a body without a
-    radius of curvature, such as a cone. A start has the logarithm of the ratio of each positive unknown to its first
+    For Maugis these are the three best of JKR's and DMT's, each at six ranges h₀ from e^−4 to e^3.5 times the given
+    one; or as they are where the range is no unknown. Those of DMT are left out for a body without a radius of
+    curvature, such as a cone. A start has the logarithm of the ratio of each positive unknown to its first
     guess, the ratio of the contact point and of the offset to the range of the data.
 
     `outliers`: indices of points that are left out.
@@ -63,8 +63,8 @@ def _starts(subject: Subject, outliers: Indices) -> list[Array]:
     starts = []
     for model in (LAWS[name] for name in subject.model.limits if LAWS[name].applies(subject.scene)):
         limit = replace(subject, model=model)
-        u = global_search(limit.problem.without(outliers), limit.sought, limit.completed)[0]
-        starts += [u + step * is_range for step in ranges]
+        searched = global_search(limit.problem.without(outliers), limit.sought, limit.completed)
+        starts += [u + step * is_range for u in searched for step in ranges]
     starts.sort(key=lambda u: float(np.abs(problem.residuals(u)).sum()))
     return starts[:3]
 
