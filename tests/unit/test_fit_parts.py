@@ -14,23 +14,13 @@ from contact1d.workflow.fit.data import DataError, curves
 from contact1d.workflow.fit.forward import LAWS, Body, Branch
 from contact1d.workflow.fit.noise import averaged, noises
 from contact1d.workflow.fit.plan import read_fit
+from tests.unit.test_fit import BASE, DEPTH, MODULUS, RADIUS, STIFFNESS, TABOR, WORK, Array
 from validation.references.force_curves import Sphere, measured, noise
 
-MODULUS, WORK, RADIUS = 2e6, 0.05, 5e-6
-TABOR = (RADIUS * WORK**2 / MODULUS**2) ** (1.0 / 3.0)
-"""Range of Maugis's contact with µ = 1 [m]."""
 SPHERE = Sphere(MODULUS, WORK, RADIUS, TABOR)
-DEPTH = SPHERE.zero_load_radius**2 / RADIUS
-STIFF = 2.0 * MODULUS * SPHERE.zero_load_radius
 CURVE = 2e-4
 """Of the pull-off force: 6000 places of the reference, with straight lines between."""
 ROUND_OFF = 1e-9
-Array = np.ndarray[Any, np.dtype[np.float64]]
-BASE = {
-    "bodies": {"profile": {"kind": "parabola", "radius": "5 µm"}},
-    "material": {"contact_modulus": "1 MPa"},
-    "adhesion": {"work_of_adhesion": "20 mJ/m²"},
-}
 PLAN = {"parameters": ["material.contact_modulus"], "base": BASE, "instrument": {"stiffness": "0.5 N/m"}}
 
 
@@ -121,7 +111,7 @@ def branch_of(kind: str) -> Branch:
 
 
 @pytest.mark.parametrize("kind", LAWS)
-@pytest.mark.parametrize("stiffness", [STIFF, 100.0 * STIFF])
+@pytest.mark.parametrize("stiffness", [STIFFNESS, 100.0 * STIFFNESS])
 def test_a_contact_model_on_a_spring_is_the_closed_form(kind: str, stiffness: float) -> None:
     """Approach and retraction, with the place and the force at which the contact is lost."""
     branch = branch_of(kind)
