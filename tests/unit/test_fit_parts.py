@@ -2,7 +2,6 @@
 
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -10,26 +9,17 @@ from scipy.stats import t as student
 
 from contact1d import read_scene
 from contact1d.workflow.fit.curve import ForceCurve
-from contact1d.workflow.fit.data import DataError, curves
+from contact1d.workflow.fit.data import DataError
 from contact1d.workflow.fit.forward import LAWS, Body, Branch
 from contact1d.workflow.fit.noise import averaged, noises
-from contact1d.workflow.fit.plan import read_fit
 from tests.unit.test_fit import BASE, DEPTH, MODULUS, RADIUS, STIFFNESS, TABOR, WORK, Array
+from tests.unit.test_fit_files import read_one
 from validation.references.force_curves import Sphere, measured, noise
 
 SPHERE = Sphere(MODULUS, WORK, RADIUS, TABOR)
 CURVE = 2e-4
 """Of the pull-off force: 6000 places of the reference, with straight lines between."""
 ROUND_OFF = 1e-9
-PLAN = {"parameters": ["material.contact_modulus"], "base": BASE, "instrument": {"stiffness": "0.5 N/m"}}
-
-
-def curve_in(path: Path, text: str, **changes: Any) -> ForceCurve:
-    path.write_text(text, encoding="utf-8")
-    ((_, _, curve),) = curves(path, read_fit(PLAN | {"data": str(path)} | changes))
-    if isinstance(curve, DataError):
-        raise curve
-    return curve
 
 
 def rows(count: int = 60) -> Array:
@@ -46,7 +36,7 @@ def text(numbers: Array, names: str = "z [nm],F [nN]") -> str:
 
 def test_an_indentation_with_opposite_signs_becomes_the_position_of_the_piezo(tmp_path: Path) -> None:
     """z = d + F/k."""
-    given = curve_in(tmp_path / "curve.csv", text(-rows(), "d [nm],F [nN]"), reverse=["d", "F"])
+    given = read_one(tmp_path / "curve.csv", text(-rows(), "d [nm],F [nN]"), reverse=["d", "F"])
     assert given.forces == pytest.approx(1e-9 * rows()[:, 1], rel=1e-12, abs=1e-20)
     assert given.positions == pytest.approx(1e-9 * (rows()[:, 0] + rows()[:, 1] / 0.5), rel=1e-12, abs=1e-20)
 
@@ -72,10 +62,10 @@ def cut(rank: int) -> Array:
 )
 def test_what_is_just_a_curve_and_what_is_none(data: Array, words: str, tmp_path: Path) -> None:
     if not words:
-        assert curve_in(tmp_path / "curve.csv", text(data)).of("approach").size >= 20
+        assert read_one(tmp_path / "curve.csv", text(data)).of("approach").size >= 20
         return
     with pytest.raises(DataError, match=words):
-        curve_in(tmp_path / "curve.csv", text(data))
+        read_one(tmp_path / "curve.csv", text(data))
 
 
 def forces(*jump: float) -> ForceCurve:
