@@ -75,8 +75,8 @@ def test_any_power_rebounds_as_by_superposition(seed: int) -> None:
     "given",
     [{"v": 1e-4},
      *(pytest.param(one, marks=pytest.mark.slow) for one in (
-         {"friction": 0.05}, {"friction": 1.0}, {"v": 100.0}, {"mass": 1e-6}, {"modulus": 1e3}, {"modulus": 1e12}, {"radius": "10 nm"},
-         {"radius": "10 m"}))],
+         {"friction": 0.05}, {"friction": 1.0}, {"v": 100.0}, {"mass": 1e-6}, {"modulus": 1e3}, {"modulus": 1e12},
+         {"radius": "10 nm"}, {"radius": "10 m"}))],
 )  # fmt: skip
 def test_a_paraboloid_knows_two_numbers(given: dict[str, Any]) -> None:
     assert restitution(0.5, **given).value == pytest.approx(restitution(0.5).value, abs=SAME)
