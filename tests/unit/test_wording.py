@@ -19,7 +19,7 @@ POINTS_ELSEWHERE = re.compile(
     r"(the same|see |as above|likewise|ditto|both ways|of (it|them|these|those)\b)", re.IGNORECASE
 )
 MOST = {"constants": 143, "pronouns": 0, "short docstrings": 0, "docstrings that point elsewhere": 0,
-        "functions without a docstring": 2, "long functions": 0, "numbers": 1095}  # fmt: skip
+        "functions without a docstring": 2, "long functions": 0, "numbers": 1090}  # fmt: skip
 LONGEST = 60
 PLAIN = (0, 0.5, 1, 2)
 """Numbers that are not counted."""
