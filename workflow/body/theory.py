@@ -59,6 +59,7 @@ class ClosedForm:
         kind: kind of the profile that it is for, as in a scene; ANY where `holds` decides.
         pressure: returns p(r) [FU/LU²] at r (n,) [LU] in the reported state; None where it predicts no pressure.
         has_range: whether the predictions depend on the Tabor parameter.
+        is_limit: whether it is a limit between or beyond which a run lies, so that predictions have no deviation.
     """
 
     name: str
@@ -68,6 +69,7 @@ class ClosedForm:
     kind: str = "parabola"
     pressure: Callable[[Case, Array], Array] | None = None
     has_range: bool = False
+    is_limit: bool = False
 
     def applies(self, case: Case) -> str:
         """Return why the theory holds for a case of its family, in a few words; "" where it does not."""
@@ -119,8 +121,9 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
     """Return the entry of a closed form in results.json: "name", "source", "applies" and "values" by name of a result.
 
     Of each prediction "values" has "value" and "unit" (of the model), "si" with both where the size of the unit is
-    known, and "deviation", the result of the run over it minus 1, None for a prediction of 0. Predictions of results
-    that the run lacks are left out. "tabor" is there where the closed form depends on the Tabor parameter.
+    known, and "deviation", the result of the run over it minus 1, None for a prediction of 0 and of a limit.
+    Predictions of results that the run lacks are left out. "tabor" is there where the closed form depends on the Tabor
+    parameter.
     """
     values: dict[str, Any] = {}
     for name, value in form.values(case).items():
@@ -131,7 +134,7 @@ def _entry(form: ClosedForm, case: Case, scales: Scales) -> dict[str, Any]:
         if scales.know(ours.unit):
             si = scales.in_si(value, 0.0, ours.unit)
             values[name]["si"] = {"value": si["value"], "unit": si["unit"]}
-        values[name]["deviation"] = ours.value / value - 1.0 if value else None
+        values[name]["deviation"] = ours.value / value - 1.0 if value and not form.is_limit else None
     depends = {"tabor": tabor(case)} if form.has_range else {}
     return {"name": form.name, "source": form.source, "applies": form.applies(case), **depends, "values": values}
 
@@ -566,8 +569,22 @@ FORMS: Mapping[str, tuple[ClosedForm, ...]] = {
         ),
     ),
     "oblique": (
-        ClosedForm("gross sliding", "K. L. Johnson, Contact Mechanics, 1985, section 11.4", _oblique, _sliding_values),
-        ClosedForm("full stick", "N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101", _sticks, _sticking_values),
+        ClosedForm(
+            "gross sliding",
+            "K. L. Johnson, Contact Mechanics, 1985, section 11.4",
+            _oblique,
+            _sliding_values,
+            ANY,
+            is_limit=True,
+        ),
+        ClosedForm(
+            "full stick",
+            "N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101",
+            _sticks,
+            _sticking_values,
+            ANY,
+            is_limit=True,
+        ),
     ),
     "relaxing": (
         ClosedForm(

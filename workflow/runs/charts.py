@@ -161,7 +161,7 @@ def _oblique(run: Run) -> Iterator[tuple[str, Chart]]:
     yield "trajectory", path_chart(run, {name: curve[name] for name in ("contact_point_x", "displacement")})
     time, legs, ends = axis_of("time"), legs_of(run, curve.time), curve.time[[0, -1]]
     ratio = np.divide(curve.tangential_force, curve.force, out=np.full_like(curve.force, nan), where=curve.force > 0.0)
-    limits = [(f"{sign}$\\mu$", ends, np.full(2, float(f"{sign}1")) * coefficient) for sign in "+-"]
+    limits = [(f"{sign}μ", ends, np.full(2, float(f"{sign}1")) * coefficient) for sign in "+-"]
     shares = Axis("tangential over normal force", NUMBER)
     yield "force_ratio", figures.path(time, curve.time, legs, (shares, ratio, figures.lines(*limits)))
     sticks = figures.lines(("stick radius", curve.time, curve.stick_radius))
