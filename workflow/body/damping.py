@@ -32,7 +32,8 @@ def damping_models(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
         value = factor * 2.0 * scene.bulk_stiffness / scene.bodies.spacing * time / mass
         coefficient: dict[str, Any] = {"value": value, "unit": RATE}
         if scales.know(RATE):
-            coefficient["si"] = scales.in_si(value, 0.0, RATE)
+            si = scales.in_si(value, 0.0, RATE)
+            coefficient["si"] = {name: si[name] for name in ("value", "unit")}
         models.append(
             {"model": model, "coefficient": coefficient, "factor": factor, "velocities": velocities,
              "restitution": reached, "exact": exact}

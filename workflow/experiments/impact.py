@@ -76,7 +76,8 @@ class ImpactExperiment(Scripted[Impact]):
         results |= {"contact_time": contact_time(trace)} if parted else {}
         if scene.viscoelasticity and scene.viscoelasticity.restitution:
             lag = scene.relaxation.retardation_time or 0.0
-            results["retardation_time"] = Reading(lag, TIME, {"solver": ROUND_OFF * lag}, prescribed=True)
+            doubt = ROUND_OFF * lag / (1.0 - scene.viscoelasticity.restitution)  # of a time as small as that
+            results["retardation_time"] = Reading(lag, TIME, {"solver": doubt}, prescribed=True)
         return results | (_along(trace, scene, results["dissipated_energy"]) if scene.is_oblique else {})
 
     def finish(self, outcome: Outcome, case: Reduction, trace: Trace) -> Outcome:
@@ -210,11 +211,11 @@ def _along(trace: Trace, scene: Scene, normal: Reading) -> dict[str, Reading]:
         "slip_energy": lost,
         "impulse_ratio": Reading(drawn / (mass * (given.velocity + back)), NUMBER, {"solver": digits}, scale=1.0),
         "rebound_tangential_velocity": Reading(
-            (given.tangential_velocity or 0.0) - drawn / mass, VELOCITY, scale=speed
+            (given.tangential_velocity or 0.0) - drawn / mass, VELOCITY, {"solver": digits * speed}, scale=speed
         ),
         "rebound_spin": Reading(
             (given.spin or 0.0) + scene.spin_ratio * drawn / (mass * scene.lever_arm), SPIN,
-            scale=speed / scene.lever_arm,
+            {"solver": digits * speed / scene.lever_arm}, speed / scene.lever_arm,
         ),
     }  # fmt: skip
     return results | ({"tangential_restitution": Reading(-last / slip, NUMBER, scale=1.0)} if slip else {})

@@ -33,7 +33,8 @@ def inputs_of(scene: Scene, outcome: Outcome) -> dict[str, Any]:
     for name, result in main_results(scene, outcome.results).items():
         pairs = list(zip(inputs, outcome.moves, strict=True))
         changes = [in_squares([move for name_of_input, move in pairs if name_of_input == key], name) for key in keys]
-        table[name] = [change / result.size if result.size else np.nan for change in changes]
+        size = abs(result.value) or result.size
+        table[name] = [change / size if size else np.nan for change in changes]
     return table
 
 

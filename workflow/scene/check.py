@@ -88,7 +88,9 @@ def _mend_key(place: Place, known: Collection[str], key: str) -> None:
     if meant := nearest(key, known):
         place.value.setdefault(meant, value)
     elif method is not None:
-        begin = f"a {place.value['kind']} is always {method}: remove it; "
+        begin = (
+            f"{'an' if place.value['kind'] == 'impact' else 'a'} {place.value['kind']} is always {method}: remove it; "
+        )
     elif homes := _homes(key):
         begin = f"it belongs in {' or '.join(homes)}; "
     message = "unknown table" if isinstance(value, dict) else "unknown key"

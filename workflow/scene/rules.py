@@ -172,10 +172,15 @@ def _excluded(d: Draft) -> Rows:
     possible = (kind for kind, table in KINDS.items() if not table.excludes.keys() & {*d.effects})
     alternative = next((f', or use kind = "{kind}"' for kind in possible), "")
     for name, reason in d.experiment.excludes.items() if d.kind else ():
-        yield (name, True, f"not in a {d.kind}: {reason}", f"remove it{alternative}")
+        yield (name, True, f"not in {with_article(d.kind)}: {reason}", f"remove it{alternative}")
     for effect in d.effects if d.holds("on_plane") else ():
         for name, reason in EFFECT_TABLES[effect].excludes.items():
             yield (name, True, f"not with [{effect}]: {reason}", f"remove [{name}], or [{effect}]")
+
+
+def with_article(kind: str) -> str:
+    """Return the kind of an experiment with its article: "a load", "an impact"."""
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
 def _methods(d: Draft) -> Rows:
@@ -191,7 +196,7 @@ def _methods(d: Draft) -> Rows:
     allowed = tuple(name for name in d.effects if name not in experiment.excludes)
     method = experiment.only_method or given or default_method(allowed)
     for name in experiment.needs:
-        yield _needed(name, f"a {kind}")
+        yield _needed(name, with_article(kind))
     if method == "dynamic" and experiment.only_method is None:
         cause = "" if given else ", made dynamic by " + ", ".join(f"[{name}]" for name in allowed if name in TIMED)
         for name in experiment.needs_in_time:
@@ -270,7 +275,7 @@ RULES: tuple[Rule, ...] = (
     ("friction", "experiment.kind=impact !oblique", f"not in an impact at a right angle: {UNMOVED}",
      "remove it, or give experiment.tangential_velocity or experiment.spin"),
     ("friction", "oblique", "missing, needed by an impact with tangential velocity or spin",
-     f"add {EFFECT_TABLES['friction'].how}"),
+     f"add {EFFECT_TABLES['friction'].how}, or remove experiment.tangential_velocity and experiment.spin"),
     *((name, "oblique", f"not with a tangential velocity or a spin: how friction acts on {bodies} has no agreed theory",
        "remove it, or give the normal velocity alone")
       for name, bodies in (("adhesion", "an adhesive edge"), ("viscoelasticity", "a body that relaxes"))),

@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, TypeVar, cast
 from pydantic import AfterValidator, Field, model_validator
 from pydantic_core import PydanticCustomError
 
+from contact1d.workflow.errors import SettingsError
 from contact1d.workflow.scene.effects import (
     Adhesion,
     Cantilever,
@@ -458,13 +459,23 @@ class Tables(Table):
 
     @property
     def relaxation(self) -> Viscoelasticity:
-        """[viscoelasticity], with the retardation time [TU] in place of a `restitution`; StopIteration without any."""
+        """[viscoelasticity], with the retardation time [TU] in place of a `restitution`; StopIteration without any.
+
+        Raises:
+            SettingsError: no retardation time has this restitution.
+        """
         from contact1d.analysis.theory.impact import retardation
 
         effect, degree = self.the(Viscoelasticity), self.bodies.profile.degree
         if effect.restitution is None or degree is None:
             return effect
-        time = self.impact_time * retardation(degree, effect.restitution)
+        try:
+            time = self.impact_time * retardation(degree, effect.restitution)
+        except ValueError:
+            raise SettingsError(
+                f"a restitution of {effect.restitution:.12g} is too near to 0 or 1, or beyond: no retardation time of "
+                "this body has it. Use a value between, or less uncertainty of it"
+            ) from None
         return effect.model_copy(update={"retardation_time": time, "restitution": None})
 
     @property
