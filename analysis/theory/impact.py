@@ -145,7 +145,7 @@ def _motion(
         """Return what is 0 at the end."""
         return ends(y)
 
-    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined]
+    event.terminal, event.direction = True, -1.0  # type: ignore[attr-defined] # scipy reads attributes of a function
     return solve_ivp(
         rates,
         (0.0, time),

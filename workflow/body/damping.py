@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from contact1d.analysis.theory.impact import nearest
-from contact1d.workflow.scene import Impact, Plate, Scene
+from contact1d.workflow.scene import Impact, Scene
 from contact1d.workflow.units import RATE, Scales, prefixed
 
 
@@ -20,8 +20,7 @@ def damping_models(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
     impact = scene.experiment
     if not isinstance(impact, Impact) or not scene.viscoelasticity or scene.bodies.profile.kind != "parabola":
         return []
-    time, mass = scene.relaxation.retardation_time, scene.the(Plate).mass
-    assert mass != "auto"
+    time = scene.relaxation.retardation_time
     if not time:
         return []
     velocities = [impact.velocity * 10.0 ** (0.5 * side) for side in (-1, 0, 1)]
@@ -29,7 +28,7 @@ def damping_models(scene: Scene, scales: Scales) -> list[dict[str, Any]]:
     models = []
     for model, ends in (("viscoelastic", 0.0), ("viscoelastic limit_damping", 1.0)):
         factor, reached, exact = nearest(times, ends)
-        value = factor * 2.0 * scene.bulk_stiffness / scene.bodies.spacing * time / mass
+        value = factor * 2.0 * scene.bulk_stiffness / scene.bodies.spacing * time / scene.impact_mass
         coefficient: dict[str, Any] = {"value": value, "unit": RATE}
         if scales.know(RATE):
             si = scales.in_si(value, 0.0, RATE)

@@ -10,6 +10,7 @@ contact point moves along x with v_s = v_t − l ω, l its distance from the cen
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
@@ -32,7 +33,7 @@ from contact1d.workflow.laws.path import Array, Path
 from contact1d.workflow.model.free import FLIGHT, impact, stretch
 from contact1d.workflow.model.reduced import reduced
 from contact1d.workflow.model.settings import Settings
-from contact1d.workflow.scene import Friction, Impact, Plate, Scene
+from contact1d.workflow.scene import Friction, Impact, Scene
 from contact1d.workflow.units import ENERGY, FORCE, LENGTH, NUMBER, SPIN, TIME, VELOCITY
 
 
@@ -57,8 +58,7 @@ class ImpactExperiment(Scripted[Impact]):
         "peak_contact_radius" [LU]; of a body that separates also "contact_time" [TU]. Peaks are those of polynomials
         through the states, the radius of a viscoelastic body that at the peak displacement.
         """
-        velocity, mass = self.given(scene).velocity, scene.the(Plate).mass
-        assert mass != "auto"
+        velocity, mass = self.given(scene).velocity, scene.impact_mass
         d, time = trace.displacement, trace.time
         energy, parted = 0.5 * mass * velocity**2, not trace.force[-FLIGHT:].any()
         back = float((d[-2] - d[-1]) / (time[-1] - time[-2])) / velocity if parted else 0.0
@@ -97,19 +97,11 @@ class ImpactExperiment(Scripted[Impact]):
         from scipy.interpolate import CubicHermiteSpline
 
         velocity, slip, step = self.given(case.scene).velocity, case.scene.slip_velocity, case.settings.motion.time_step
-        time, d, v, x, s = np.asarray(
-            [(0.0, 0.0, velocity, 0.0, slip)]
-            + [
-                (
-                    state.step * step,
-                    state.displacement,
-                    state.plate_velocity,
-                    state.plate_x,
-                    state.motion.get(SLIP_VELOCITY, 0.0),
-                )
-                for state in states
-            ]
-        ).T
+        rows = [(0.0, 0.0, velocity, 0.0, slip)]
+        for state in states:
+            speeds = state.plate_velocity, state.motion.get(SLIP_VELOCITY, 0.0)
+            rows.append((state.step * step, state.displacement, speeds[0], state.plate_x, speeds[1]))
+        time, d, v, x, s = np.asarray(rows).T
         moved, drawn = CubicHermiteSpline(time, d, v), CubicHermiteSpline(time, x, s)
         moments = np.interp(np.linspace(0.0, len(states), 1 + dense * len(states)), np.arange(len(time)), time)
         return Path(moved(moments), drawn(moments), moments, moved(moments, 1))
@@ -141,21 +133,12 @@ class ImpactExperiment(Scripted[Impact]):
         return f"Use {finer_spacing(scene)}"
 
 
-def _slipping_mass(scene: Scene) -> float:
-    """Return M/(1 + M l²/I) [MU], the mass by which friction accelerates the contact point; 0 of a normal impact."""
-    mass = scene.the(Plate).mass
-    assert mass != "auto"
-    return mass / (1.0 + scene.spin_ratio) if scene.is_oblique else 0.0
-
-
 def _kinetic(scene: Scene, velocity: float, slip: float) -> float:
     """Return the kinetic energy [FU·LU] of a normal velocity and that of the contact point along x [LU/TU].
 
     It is ½ (M v² + M v_s²/(1 + M l²/I)), without the part of translation and spin that friction does not change.
     """
-    mass = scene.the(Plate).mass
-    assert mass != "auto"
-    return 0.5 * (mass * velocity**2 + _slipping_mass(scene) * slip**2)
+    return 0.5 * (scene.impact_mass * velocity**2 + scene.slip_mass * slip**2)
 
 
 def _columns(case: Reduction, states: Sequence[State], path: Path) -> dict[str, tuple[float, ...]]:
@@ -198,11 +181,11 @@ def _along(trace: Trace, scene: Scene, normal: Reading) -> dict[str, Reading]:
         scene: of the impact.
         normal: the loss of normal kinetic energy [FU·LU].
     """
-    given, slip, lighter = scene.experiment, scene.slip_velocity, _slipping_mass(scene)
+    given, slip, mass, lighter = scene.experiment, scene.slip_velocity, scene.impact_mass, scene.slip_mass
     assert isinstance(given, Impact)
     step, back, last = (float(column[-1] - column[-2]) for column in (trace.time, trace.displacement, trace.along))
-    back, last, mass = -back / step, last / step, lighter * (1.0 + scene.spin_ratio)
-    digits = 2.0 * np.finfo(np.float64).eps * len(trace)  # of a difference of two positions
+    back, last = -back / step, last / step
+    digits = 2.0 * sys.float_info.epsilon * len(trace)  # of a difference of two positions
     drawn, speed = lighter * (slip - last), abs(slip) or given.velocity
     size = 0.5 * (lighter * slip**2 + mass * given.velocity**2)
     lost = replace(normal, value=normal.value + 0.5 * lighter * (slip**2 - last**2), scale=size)

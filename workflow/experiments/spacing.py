@@ -162,10 +162,8 @@ def contact_radius(scene: Scene) -> float:
         load = 0.0
     values, wanted = forces, load or 0.0
     if isinstance(scene.experiment, Impact):  # where the body has lost its kinetic energy
-        assert scene.plate
-        assert scene.plate.mass != "auto"
         work = np.cumsum(0.5 * (forces[1:] + forces[:-1]) * np.diff(displacements))
-        values, wanted = np.append(0.0, work), 0.5 * scene.plate.mass * scene.experiment.velocity**2
+        values, wanted = np.append(0.0, work), 0.5 * scene.impact_mass * scene.experiment.velocity**2
     elif load is None:
         values, wanted = displacements, max(scene.experiment.places())
     lower = np.flatnonzero(values < wanted)

@@ -575,11 +575,10 @@ def stopped_at(scene: Scene, law: Law, softer: float = 1.0) -> float:
     the elastic body; `softer`, a factor, is how many times softer the actual one is.
 
     Raises:
-        AssertionError: an impact without a plate, or with an automatic mass M.
+        StopIteration: an impact without a plate.
+        AssertionError: one with an automatic mass M.
         OverflowError: an unbounded body is too wide compared with its spacing.
     """
     if not isinstance(scene.experiment, Impact):
         return 0.0
-    assert scene.plate
-    assert scene.plate.mass != "auto"
-    return law.stopped(0.5 * softer * scene.plate.mass * scene.experiment.velocity**2)
+    return law.stopped(0.5 * softer * scene.impact_mass * scene.experiment.velocity**2)

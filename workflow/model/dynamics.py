@@ -88,12 +88,12 @@ def motion_of(
     """Return masses, drags, timesteps, settling time and the legs of a slide, for a motion of the scene in time.
 
     The timestep is the smaller one of those that a particle and the plate allow, in an impact a thousandth of the time
-    to the deepest displacement at the impact velocity (below a tolerance of 1e-3 less); shortened to a whole part of
-    the duration. An automatic mass of the plate is that of all its particles; 0 without a plate. Automatic drag is
-    critical for 0.6 of the contact stiffness, without a plate half the critical one of a particle on its spring. With
-    automatic [damping] the settling drag is at least the critical one of a particle in the stiffest contact, and its
-    timestep short enough for it; else both are the usual ones. In a slide the settling drag is that under which the
-    plate is loaded. `damped_stiffness` is 0 in a slide and without automatic [damping].
+    to the deepest displacement at the impact velocity (a third of that in an oblique one, below a tolerance of 1e-3
+    less); shortened to a whole part of the duration. An automatic mass of the plate is that of all its particles; 0
+    without a plate. Automatic drag is critical for 0.6 of the contact stiffness, without a plate half the critical one
+    of a particle on its spring. With automatic [damping] the settling drag is at least the critical one of a particle
+    in the stiffest contact, and its timestep short enough for it; else both are the usual ones. In a slide the settling
+    drag is that under which the plate is loaded. `damped_stiffness` is 0 in a slide and without automatic [damping].
 
     Args:
         scene: whose motion it is.

@@ -85,21 +85,13 @@ def impact(scene: Scene, settings: Settings, model: Particles, velocity: float, 
     the contact point along x, u″ = −F_t (1 + m l²/I)/M, with the velocity v_t − l ω at first.
 
     Raises:
-        AssertionError: the scene has no plate, or one with an automatic mass M.
+        StopIteration: the scene has no plate.
+        AssertionError: its mass M is automatic.
     """
-    assert scene.plate
-    assert scene.plate.mass != "auto"
     steps, time = max(1, 16 // dense), stretch(settings, velocity) * settings.motion.time_step / dense
-    step, contact_force, mass = time / steps, model.force_in_time(), scene.plate.mass
-    displacement, force, along, shear, slip, shear_force = (
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        scene.slip_velocity,
-        model.shear_in_time(),
-    )
-    lighter = mass / (1.0 + scene.spin_ratio) if scene.is_oblique else mass
+    step, contact_force, mass = time / steps, model.force_in_time(), scene.impact_mass
+    displacement = force = along = shear = 0.0
+    slip, lighter, shear_force = scene.slip_velocity, scene.slip_mass, model.shear_in_time()
     displacements, forces, velocities, places = [0.0], [0.0], [velocity], [0.0]
     while len(displacements) < FLIGHT * dense or not is_over(displacements, forces, FLIGHT * dense):
         for _ in range(steps):

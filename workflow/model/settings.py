@@ -46,7 +46,7 @@ from contact1d.workflow.model.forces import (
     plane_stiffness_of,
     stiffest_of,
 )
-from contact1d.workflow.scene import Impact, Interaction, Plate, Scene
+from contact1d.workflow.scene import Impact, Interaction, Scene
 from contact1d.workflow.scene.remedies import less_compression
 
 STAGGER_SHARE = 5e-4
@@ -243,9 +243,7 @@ def _stopped(scene: Scene, law: Law, rounds: int = 4) -> float:
         if (softer := law.creep(time)) == 1.0:
             break
         depth = stopped_at(scene, law, softer)
-    mass = scene.the(Plate).mass
-    assert mass != "auto"
-    if sticks := law.sticking(mass, experiment.velocity, time):
+    if sticks := law.sticking(scene.impact_mass, experiment.velocity, time):
         raise SettingsError(
             f"the body sticks: it {sticks[0]}, for longer than is followed, where an impact of the elastic body takes "
             f"some {time:.4g} TU: give {sticks[1]} in [viscoelasticity]"

@@ -13,7 +13,7 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from contact1d.workflow.scene.kinds import Kind
+from contact1d.workflow.scene.kinds import Kind, with_article
 from contact1d.workflow.scene.problems import MOST_PROBLEMS, Problem, as_toml, nearest, path_of, plain, suggestion
 from contact1d.workflow.scene.quantities import OutOfRange, Place, keys_of, tables_in
 from contact1d.workflow.scene.schema import statement, text_of
@@ -88,9 +88,7 @@ def _mend_key(place: Place, known: Collection[str], key: str) -> None:
     if meant := nearest(key, known):
         place.value.setdefault(meant, value)
     elif method is not None:
-        begin = (
-            f"{'an' if place.value['kind'] == 'impact' else 'a'} {place.value['kind']} is always {method}: remove it; "
-        )
+        begin = f"{with_article(place.value['kind'])} is always {method}: remove it; "
     elif homes := _homes(key):
         begin = f"it belongs in {' or '.join(homes)}; "
     message = "unknown table" if isinstance(value, dict) else "unknown key"

@@ -81,6 +81,11 @@ class Cycles(Table):
         return [self.amplitude * (abs(i % self.points / n - 2.0) - 1.0) for i in steps]
 
 
+def with_article(kind: str) -> str:
+    """Return the kind of an experiment with its article: "a load", "an impact"."""
+    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
+
+
 def _values(listed: Sequence[float] | Span | Cycles) -> list[float]:
     """Return the displacements [LU] of a list, a span or cycles, in order, as a new list."""
     return list(listed) if isinstance(listed, Sequence) else listed.values()

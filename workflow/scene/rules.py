@@ -30,7 +30,7 @@ from contact1d.workflow.scene.draft import (
     limit,
 )
 from contact1d.workflow.scene.experiments import KINDS
-from contact1d.workflow.scene.kinds import UNMOVED, Cycles, Span
+from contact1d.workflow.scene.kinds import UNMOVED, Cycles, Span, with_article
 from contact1d.workflow.scene.problems import Problem
 from contact1d.workflow.scene.quantities import Place, Table, keys_of
 from contact1d.workflow.scene.tables import (
@@ -176,11 +176,6 @@ def _excluded(d: Draft) -> Rows:
     for effect in d.effects if d.holds("on_plane") else ():
         for name, reason in EFFECT_TABLES[effect].excludes.items():
             yield (name, True, f"not with [{effect}]: {reason}", f"remove [{name}], or [{effect}]")
-
-
-def with_article(kind: str) -> str:
-    """Return the kind of an experiment with its article: "a load", "an impact"."""
-    return f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
 
 
 def _methods(d: Draft) -> Rows:

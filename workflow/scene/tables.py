@@ -485,15 +485,14 @@ class Tables(Table):
 
         from contact1d.analysis.theory.impact import unit_time
 
-        impact, degree, plate = self.experiment, self.bodies.profile.degree, self.the(Plate)
+        impact, degree = self.experiment, self.bodies.profile.degree
         assert degree is not None
         assert isinstance(impact, Impact)
-        assert plate.mass != "auto"
         # F = 2E* n/(n + 1) a d at a displacement d, here that of a contact radius of one spacing.
         a, modulus = self.bodies.spacing, self.bulk_stiffness / self.bodies.spacing
         d = float(self.bodies.profile.transformed(np.asarray([a]))[0])
         force = 2.0 * modulus * degree / (degree + 1.0) * a * d / d ** (1.0 + 1.0 / degree)
-        return unit_time(degree, force, plate.mass, impact.velocity)
+        return unit_time(degree, force, self.impact_mass, impact.velocity)
 
     @property
     def is_oblique(self) -> bool:
@@ -504,13 +503,26 @@ class Tables(Table):
     def spin_ratio(self) -> float:
         """m l²/I of an oblique impact, with the lever arm l of the contact point, the mass m and moment of inertia I.
 
-        Friction accelerates the contact point as a body of mass m/(1 + m l²/I): 2/7 m of a solid ball.
+        0 of any other scene.
         """
+        if not self.is_oblique:
+            return 0.0
         plate = self.the(Plate)
         if plate.moment_of_inertia == "auto":
             return 2.5  # of a solid ball
-        assert plate.mass != "auto"
-        return plate.mass * self.lever_arm**2 / plate.moment_of_inertia
+        return self.impact_mass * self.lever_arm**2 / plate.moment_of_inertia
+
+    @property
+    def impact_mass(self) -> float:
+        """Mass m [MU] of the body in an impact; StopIteration without a plate, AssertionError where it is automatic."""
+        mass = self.the(Plate).mass
+        assert mass != "auto"
+        return mass
+
+    @property
+    def slip_mass(self) -> float:
+        """Mass m/(1 + m l²/I) [MU] by which friction accelerates the contact point in an impact."""
+        return self.impact_mass / (1.0 + self.spin_ratio)
 
     @property
     def lever_arm(self) -> float:
